@@ -1,0 +1,42 @@
+#pragma once
+
+#include "core/pose.hpp"
+
+#include <cstdint>
+
+namespace lilo {
+
+/// How far a pose may be trusted. Always said, never implied.
+enum class TrackingStatus : std::uint8_t {
+  initializing,  ///< no map yet, or not yet sure of the first motion
+  tracking,      ///< aligned with the map
+  degraded,      ///< aligned, but some direction was held to the prediction or data were missing
+  lost,          ///< not aligned: the pose is the prediction alone
+};
+
+/// Velocity of the sensor, in the sensor's own frame.
+struct Twist {
+  Eigen::Vector3d linear_mps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_radps = Eigen::Vector3d::Zero();
+};
+
+/// What the odometry says of one scan.
+struct Estimate {
+  std::uint64_t scan_index = 0;
+  std::int64_t stamp_ns = 0;  ///< the instant the pose describes: the scan's last firing
+  Pose T_odom_sensor;         ///< identity at the first scan
+  Twist twist;
+  TrackingStatus status = TrackingStatus::initializing;
+  /// 1-sigma squared, row-major meaning: x y z rx ry rz (m, rad), in the sensor's frame.
+  /// Valid only where has_covariance is set.
+  Matrix6d covariance = Matrix6d::Zero();
+  bool has_covariance = false;
+
+  int edge_count = 0, surface_count = 0, ground_count = 0;  ///< features used
+  int map_edge_count = 0, map_surface_count = 0;            ///< points the local map holds
+  int correspondence_count = 0;                             ///< residuals of the last iteration
+  int iterations = 0;                                       ///< Gauss-Newton steps taken
+  double residual_rms_m = 0.0;                              ///< of the last iteration
+};
+
+}  // namespace lilo

@@ -1,0 +1,30 @@
+#include "core/odometry.hpp"
+
+namespace lilo {
+
+const char* to_string(Stage stage) {
+  switch (stage) {
+    case Stage::project:
+      return "project";
+    case Stage::filter:
+      return "filter";
+    case Stage::reconstruct:
+      return "reconstruct";
+    case Stage::deskew:
+      return "deskew";
+    case Stage::align:
+      return "align";
+    case Stage::update_map:
+      return "update_map";
+  }
+  return "unknown";
+}
+
+Odometry::Odometry(const OdometryConfig& config) : config_(config) {}
+
+Estimate Odometry::process(const Scan& scan, StageHook hook) {
+  hook(Stage::project);
+  return {.scan_index = scan.index, .stamp_ns = scan.end_ns};
+}
+
+}  // namespace lilo

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/estimate.hpp"
+#include "core/odometry_config.hpp"
+#include "core/scan.hpp"
+
+namespace lilo {
+
+/// The stations of the pipeline, for those who time it.
+enum class Stage : std::uint8_t { project, filter, reconstruct, deskew, align, update_map };
+inline constexpr int kStageCount = 6;
+const char* to_string(Stage stage);
+
+/// Called when a stage of one scan has ended. core has no clock: the caller brings one.
+struct StageHook {
+  void (*done)(void* context, Stage stage) = nullptr;
+  void* context = nullptr;
+  void operator()(Stage stage) const {
+    if (done != nullptr) done(context, stage);
+  }
+};
+
+/// LiDAR odometry: scans in, poses out. Same scans, same bits out.
+/// Not thread-safe: one thread calls process().
+class Odometry {
+ public:
+  explicit Odometry(const OdometryConfig& config);
+
+  /// Takes the next scan and says where the sensor was at its last firing. Never throws on data:
+  /// a scan too poor to align gives the prediction with status `lost`.
+  Estimate process(const Scan& scan, StageHook hook = {});
+
+ private:
+  OdometryConfig config_;
+};
+
+}  // namespace lilo

@@ -1,0 +1,48 @@
+#include "core/pose.hpp"
+
+#include <cmath>
+
+namespace lilo {
+
+Eigen::Quaterniond so3_exp(const Eigen::Vector3d& w) {
+  const double angle = w.norm();
+  // sin(a/2)/a by its Taylor series near zero, where the quotient loses its digits.
+  const double k = angle < 1e-6 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
+  const Eigen::Quaterniond q(std::cos(0.5 * angle), k * w.x(), k * w.y(), k * w.z());
+  return q.normalized();
+}
+
+Eigen::Vector3d so3_log(const Eigen::Quaterniond& q) {
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;  // q and -q are one rotation: take the short way
+  const Eigen::Vector3d v = sign * q.vec();
+  const double s = v.norm();
+  const double angle = 2.0 * std::atan2(s, sign * q.w());
+  return s < 1e-9 ? Eigen::Vector3d(2.0 * v) : Eigen::Vector3d(v * (angle / s));
+}
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return m;
+}
+
+Pose Pose::operator*(const Pose& other) const {
+  return {(rotation * other.rotation).normalized(), *this * other.translation_m};
+}
+
+Pose Pose::inverse() const {
+  const Eigen::Quaterniond back = rotation.conjugate();
+  return {back, -(back * translation_m)};
+}
+
+Pose scale_motion(const Pose& T, double s) {
+  return {so3_exp(s * so3_log(T.rotation)), s * T.translation_m};
+}
+
+Pose interpolate(const Pose& a, const Pose& b, double s) {
+  const Eigen::Vector3d w = so3_log(a.rotation.conjugate() * b.rotation);
+  return {(a.rotation * so3_exp(s * w)).normalized(),
+          a.translation_m + s * (b.translation_m - a.translation_m)};
+}
+
+}  // namespace lilo
