@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/odometry_config.hpp"
+#include "drivers/packet_source.hpp"
+#include "drivers/sensor_config.hpp"
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lilo {
+
+/// Where poses go.
+struct PublishConfig {
+  std::vector<std::string> sinks;           ///< "host:port", one datagram a pose to each
+  std::string frame_id = "odom";            ///< parent frame, REP-105
+  std::string child_frame_id = "velodyne";  ///< the frame whose pose is published
+};
+
+/// Real-time measures, each of them optional.
+struct RealtimeConfig {
+  int worker_cpu = -1;       ///< pin the worker here; -1: do not pin
+  int worker_priority = 0;   ///< SCHED_FIFO priority; 0: the normal policy
+  bool lock_memory = false;  ///< mlockall
+  int ring_slots = 4;        ///< scans the ring can hold
+};
+
+struct Config {
+  SensorConfig sensor;
+  UdpConfig udp;
+  OdometryConfig odometry;
+  PublishConfig publish;
+  RealtimeConfig realtime;
+};
+
+/// A configuration that cannot be used: one line per error, "file:line:column: key: expected ...,
+/// found ...", all errors at once.
+class ConfigError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Reads a YAML file. Throws ConfigError.
+Config load_config(const std::string& path);
+
+}  // namespace lilo

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "core/scan.hpp"
+#include "drivers/packet_source.hpp"
+#include "drivers/sensor_config.hpp"
+
+#include <cstdint>
+#include <memory>
+
+namespace lilo {
+
+/// Takes finished scans. exchange() is called once a revolution, in the middle of a packet if the
+/// cut lies there, and returns the (cleared) scan to write next: a ring slot in the daemon, the
+/// same object again in tools. No copy of returns is ever made.
+class ScanSink {
+ public:
+  ScanSink() = default;
+  ScanSink(const ScanSink&) = delete;
+  ScanSink& operator=(const ScanSink&) = delete;
+  virtual ~ScanSink() = default;
+  virtual Scan& exchange(Scan& finished) = 0;
+};
+
+/// Totals since the start. Every byte that came in is in one of these.
+struct DriverCounts {
+  std::uint64_t data_packets = 0;
+  std::uint64_t position_packets = 0;
+  std::uint64_t malformed_packets = 0;  ///< wrong size, flag or azimuth: counted, never fatal
+  std::uint64_t packets_lost = 0;
+  std::uint64_t packets_duplicated = 0;
+  std::uint64_t packets_reordered = 0;
+  std::uint64_t scans_complete = 0;
+  std::uint64_t scans_partial = 0;
+  std::uint64_t sensor_restarts = 0;
+};
+
+/// Packets to scans: finds the model, decodes, cuts by azimuth, keeps the sensor's clock.
+/// One thread; no allocation after the first revolution; nothing a packet holds can harm it.
+class ScanBuilder {
+ public:
+  /// `target` is written first. Throws DriverError when the calibration cannot be read.
+  ScanBuilder(const SensorConfig& config, Scan& target, ScanSink& sink);
+  ~ScanBuilder();
+  ScanBuilder(const ScanBuilder&) = delete;
+  ScanBuilder& operator=(const ScanBuilder&) = delete;
+
+  void feed(const PacketView& packet);
+
+  [[nodiscard]] const DriverCounts& counts() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lilo

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "core/scan.hpp"
+#include "drivers/scan_builder.hpp"
+#include "drivers/sensor_config.hpp"
+
+#include <memory>
+#include <string>
+
+namespace lilo {
+
+/// Scans of a recording, as fast as they can be read. The revolutions at both ends of a pcap that
+/// were not recorded whole are left out: the first scan is the first complete revolution.
+class ScanSource {
+ public:
+  ScanSource() = default;
+  ScanSource(const ScanSource&) = delete;
+  ScanSource& operator=(const ScanSource&) = delete;
+  virtual ~ScanSource() = default;
+
+  /// Fills `scan` with the next one; false at the end.
+  virtual bool next(Scan& scan) = 0;
+  [[nodiscard]] virtual DriverCounts driver_counts() const = 0;
+  [[nodiscard]] virtual SourceCounts source_counts() const = 0;
+  [[nodiscard]] virtual double progress() const = 0;
+};
+
+/// `path`: a pcap ("-" for standard input), a folder of NNNNNN.bin scans, or a KITTI sequences/NN
+/// folder (velodyne/, times.txt). Throws DriverError with one line for the user.
+std::unique_ptr<ScanSource> open_scans(const std::string& path, const SensorConfig& config);
+
+}  // namespace lilo

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <numbers>
+#include <string>
+
+namespace lilo {
+
+enum class SensorModel : std::uint8_t { automatic, vlp16, hdl64e };
+
+/// Which returns of a dual-return sensor become part of the scan.
+enum class ReturnChoice : std::uint8_t { strongest, last, both };
+
+/// How packets become scans.
+struct SensorConfig {
+  SensorModel model = SensorModel::automatic;
+  std::string calibration_file;  ///< HDL-64E: db.xml or the ROS YAML form; empty: from the packets
+  double cut_azimuth_rad = 0.0;  ///< a scan starts here; clockwise from +x as the sensor counts
+  double max_hole_rad = 5.0 * std::numbers::pi / 180.0;  ///< a larger hole makes a scan partial
+  double min_range_m = 0.4;  ///< nearer returns are the robot itself or dust on the lens
+  double max_range_m = 130.0;
+  ReturnChoice returns = ReturnChoice::both;
+};
+
+}  // namespace lilo
