@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace lilo {
+
+/// `lilo eval`: how far an estimated trajectory is from the truth.
+void add_eval_command(CLI::App& app);
+
+}  // namespace lilo

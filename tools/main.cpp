@@ -1,0 +1,38 @@
+#include "tools/eval/eval_command.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+
+namespace {
+
+constexpr int kFailure = 1;  // the work could not be done: one line on stderr says why
+constexpr int kUsage = 2;    // the command line was wrong
+
+int run(int argc, char** argv) {
+  CLI::App app{"lilo: the lilod toolbox", "lilo"};
+  app.set_version_flag("--version", "lilo " LILO_VERSION);
+  app.require_subcommand(1);
+  lilo::add_eval_command(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "lilo: %s (lilo --help)\n", error.what());
+    return kUsage;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "lilo: %s\n", error.what());
+    return kFailure;
+  }
+}
