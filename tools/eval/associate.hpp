@@ -1,0 +1,25 @@
+#pragma once
+
+#include "tools/trajectory.hpp"
+
+#include <vector>
+
+namespace lilo {
+
+/// Estimate and truth of the same instants: the vectors have equal lengths.
+struct Matched {
+  std::vector<Pose> estimate;
+  std::vector<Pose> truth;
+  std::size_t unmatched = 0;  ///< poses of the estimate at whose time the truth is unknown
+};
+
+/// Truth this far beyond its first or last pose is still taken, along the motion of its end: file
+/// formats round times, and a turn's last firing is not the same instant for everyone.
+inline constexpr std::int64_t kMaxExtrapolation_ns = 5'000'000;
+
+/// By time where both know times: the truth is interpolated (rotation at constant angular velocity,
+/// which is slerp; position linearly). By row else; then both must have as many poses.
+/// Throws std::runtime_error when fewer than two poses match.
+Matched associate(const Trajectory& estimate, const Trajectory& truth);
+
+}  // namespace lilo
