@@ -1,0 +1,86 @@
+#include "config/print_config.hpp"
+
+#include "config/key.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <sstream>
+
+namespace lilo {
+namespace {
+
+constexpr std::size_t kLineWidth = 100;
+
+// Words of `text` in lines that start with `margin`.
+std::string wrapped(const std::string& text, const std::string& margin) {
+  std::istringstream words(text);
+  std::string out, line = margin, word;
+  while (words >> word) {
+    if (line.size() + 1 + word.size() > kLineWidth) {
+      out += line + '\n';
+      line = margin;
+    }
+    line += ' ' + word;
+  }
+  return out + line + '\n';
+}
+
+const char* when(Reload reload) {
+  return reload == Reload::live ? "Changes on reload." : "Needs a restart.";
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
+  return text;
+}
+
+bool in_section(const Key& key, const Section& section) {
+  return key.path.substr(0, key.path.rfind('.')) == section.path;
+}
+
+// Names of choices need no quotes.
+std::string value_of(const Key& key, const Config& config) {
+  const Value value = key.get(config);
+  return key.type == KeyType::choice ? std::get<std::string>(value) : to_yaml(value);
+}
+
+std::string name_of(const Key& key) { return key.path.substr(key.path.rfind('.') + 1); }
+
+}  // namespace
+
+std::string print_config(const Config& config) {
+  const Config defaults;
+  std::string out;
+  for (const Section& section : config_sections()) {
+    out += fmt::format("{}# {}\n{}:\n", out.empty() ? "" : "\n", section.meaning, section.path);
+    for (const Key& key : config_keys()) {
+      if (!in_section(key, section)) continue;
+      const std::string facts = fmt::format("{}; default {}. {}", capitalised(expected(key)),
+                                            value_of(key, defaults), when(key.reload));
+      out += wrapped(key.meaning, "  #") + wrapped(facts, "  #");
+      out += fmt::format("  {}: {}\n", name_of(key), value_of(key, config));
+    }
+  }
+  return out;
+}
+
+std::string print_reference() {
+  const Config defaults;
+  std::string out =
+      "# Every key of the configuration file\n\n"
+      "Made by `lilod --print-reference`; a test keeps it equal to the program.\n";
+  for (const Section& section : config_sections()) {
+    out += fmt::format("\n## {}\n{}\n\n", section.path, section.meaning);
+    out += "| Key | Expected | Default | Reload | Meaning |\n|---|---|---|---|---|\n";
+    for (const Key& key : config_keys()) {
+      if (!in_section(key, section)) continue;
+      out += fmt::format("| `{}` | {} | `{}` | {} | {} |\n", name_of(key), expected(key),
+                         value_of(key, defaults), key.reload == Reload::live ? "live" : "restart",
+                         key.meaning);
+    }
+  }
+  return out;
+}
+
+}  // namespace lilo
