@@ -1,4 +1,5 @@
 #include "tools/eval/eval_command.hpp"
+#include "tools/listen/listen_command.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -15,6 +16,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "lilo " LILO_VERSION);
   app.require_subcommand(1);
   lilo::add_eval_command(app);
+  lilo::add_listen_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version

@@ -1,0 +1,46 @@
+#include "tools/listen/pose_message.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lilo {
+namespace {
+
+constexpr const char* kDatagram =
+    R"({"timestamp":1715678102.249522,"seq":17,"session":"6f","pose":{)"
+    R"("stamp":{"sec":1715678102,"nsec":249522001},"frame_id":"odom","child_frame_id":"velodyne",)"
+    R"("status":"tracking","position":{"x":1.5,"y":-2.25,"z":0.125},)"
+    R"("orientation":{"x":0,"y":0,"z":0.7071067811865476,"w":0.7071067811865476},)"
+    R"("some_later_addition":[1,2,3]}})";
+
+TEST(PoseMessage, IsReadFromTheProtocolsJson) {
+  PoseMessage message;
+  ASSERT_EQ(parse_message(kDatagram, message), MessageKind::pose);
+  EXPECT_EQ(message.seq, 17U);
+  EXPECT_EQ(message.session, "6f");
+  EXPECT_EQ(message.status, "tracking");
+  EXPECT_EQ(message.pose.stamp_ns, 1715678102249522001);
+  EXPECT_EQ(message.pose.pose.translation_m, Eigen::Vector3d(1.5, -2.25, 0.125));
+  const Eigen::Vector3d turned = message.pose.pose.rotation * Eigen::Vector3d::UnitX();
+  EXPECT_LT((turned - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+}
+
+TEST(PoseMessage, LineShowsTimeOfDayAndAngles) {
+  PoseMessage message;
+  ASSERT_EQ(parse_message(kDatagram, message), MessageKind::pose);
+  const std::string line = pose_line(message);
+  for (const char* part : {"09:15:02.249522", " 17 ", "tracking", "1.500", "-2.250", "90.000"}) {
+    EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
+  }
+}
+
+TEST(PoseMessage, OtherObjectsAreNotPosesAndRubbishIsNoMessage) {
+  PoseMessage message;
+  EXPECT_EQ(parse_message(R"({"timestamp":1.0,"health":{}})", message), MessageKind::other);
+  for (const char* bad : {"", "{", "17", "[]", R"({"seq":1,"pose":{}})", R"({"seq":1,"pose":3})",
+                          "\xff\xfe", R"({"seq":"x","pose":{"position":{}}})"}) {
+    EXPECT_EQ(parse_message(bad, message), MessageKind::malformed) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace lilo

@@ -1,0 +1,78 @@
+#include "tools/listen/pose_message.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <ctime>
+#include <numbers>
+
+namespace lilo {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+PoseMessage message_from(const json& object) {
+  const json& pose = object.at("pose");
+  const json& position = pose.at("position");
+  const json& q = pose.at("orientation");
+  const json& stamp = pose.at("stamp");
+  PoseMessage message;
+  message.seq = object.at("seq").get<std::uint64_t>();
+  message.session = object.value("session", "");
+  message.status = pose.value("status", "");
+  message.pose.stamp_ns =
+      stamp.at("sec").get<std::int64_t>() * kSecond + stamp.at("nsec").get<std::int64_t>();
+  message.pose.pose.translation_m = {position.at("x").get<double>(), position.at("y").get<double>(),
+                                     position.at("z").get<double>()};
+  message.pose.pose.rotation = Eigen::Quaterniond(q.at("w").get<double>(), q.at("x").get<double>(),
+                                                  q.at("y").get<double>(), q.at("z").get<double>())
+                                   .normalized();
+  return message;
+}
+
+/// Rotations about fixed x, then y, then z (REP-103), in degrees.
+Eigen::Vector3d roll_pitch_yaw_deg(const Eigen::Quaterniond& rotation) {
+  const Eigen::Matrix3d r = rotation.toRotationMatrix();
+  const Eigen::Vector3d rad(std::atan2(r(2, 1), r(2, 2)),
+                            std::atan2(-r(2, 0), std::hypot(r(2, 1), r(2, 2))),
+                            std::atan2(r(1, 0), r(0, 0)));
+  return rad * (180.0 / std::numbers::pi);
+}
+
+}  // namespace
+
+MessageKind parse_message(std::string_view datagram, PoseMessage& message) {
+  const json object = json::parse(datagram, nullptr, /*allow_exceptions=*/false);
+  if (!object.is_object()) return MessageKind::malformed;
+  if (!object.contains("pose")) return MessageKind::other;
+  try {
+    message = message_from(object);
+  } catch (const json::exception&) {
+    return MessageKind::malformed;
+  }
+  return MessageKind::pose;
+}
+
+std::string pose_heading() {
+  return "       time UTC       seq  status              x m        y m        z m    roll deg  "
+         "pitch deg    yaw deg\n";
+}
+
+std::string pose_line(const PoseMessage& message) {
+  const Eigen::Vector3d& t = message.pose.pose.translation_m;
+  const Eigen::Vector3d angles = roll_pitch_yaw_deg(message.pose.pose.rotation);
+  const std::int64_t stamp_ns = message.pose.stamp_ns;
+  const std::time_t seconds = stamp_ns / kSecond;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  return fmt::format(
+      "{:%H:%M:%S}.{:06d}  {:8d}  {:<12}  {:9.3f}  {:9.3f}  {:9.3f}   {:9.3f}  {:9.3f}  {:9.3f}\n",
+      utc, stamp_ns % kSecond / 1000, message.seq, message.status, t.x(), t.y(), t.z(), angles.x(),
+      angles.y(), angles.z());
+}
+
+}  // namespace lilo

@@ -1,0 +1,86 @@
+#include "tools/replay/replay_command.hpp"
+
+#include "tools/cli.hpp"
+#include "tools/clock.hpp"
+#include "tools/replay/player.hpp"
+#include "tools/stop_signals.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <unistd.h>
+
+namespace lilo {
+namespace {
+
+struct Command {
+  std::string file;
+  ReplayOptions replay;
+  bool loop = false;
+};
+
+std::string summary(const ReplayCounts& counts) {
+  const double seconds = static_cast<double>(counts.elapsed_ns) * 1e-9;
+  const double per_second = seconds > 0.0 ? 1.0 / seconds : 0.0;
+  return fmt::format(
+      "{} packets in {:.1f} s: {:.0f} packets/s, {:.2f} Mbit/s, at most {:.1f} ms late",
+      counts.packets, seconds, static_cast<double>(counts.packets) * per_second,
+      static_cast<double>(counts.bytes) * 8e-6 * per_second,
+      static_cast<double>(counts.latest_ns) * 1e-6);
+}
+
+/// A line that renews itself twice a second, where someone looks.
+class Ticker {
+ public:
+  void show(const ReplayCounts& counts) {
+    if (!visible_ || monotonic_ns() < next_ns_) return;
+    next_ns_ = monotonic_ns() + 500'000'000;
+    fmt::print(stderr, "\r\033[K{}", summary(counts));
+    std::fflush(stderr);
+  }
+  void clear() const {
+    if (visible_) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  bool visible_ = isatty(STDERR_FILENO) != 0;
+  std::int64_t next_ns_ = 0;
+};
+
+void run_replay(const Command& command) {
+  StopSignals stop;
+  Ticker ticker;
+  std::unique_ptr<PacketSource> source = open_pcap(command.file);
+  Player player(command.replay);
+  const auto go_on = [&](const ReplayCounts& counts) {
+    ticker.show(counts);
+    return !stop.raised();
+  };
+  while (player.play(*source, go_on) && command.loop && player.counts().packets > 0) {
+    source = open_pcap(command.file);
+  }
+  ticker.clear();
+  fmt::print("{}\n", summary(player.counts()));
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app) {
+  auto command = std::make_shared<Command>();
+  ReplayOptions& replay = command->replay;
+  CLI::App* sub = app.add_subcommand("replay", "Play a capture as UDP packets at sensor speed");
+  sub->add_option("FILE", command->file, "pcap; - is standard input")->required();
+  sub->add_option("--to", replay.host, "Where the packets go")->capture_default_str();
+  sub->add_option("--speed", replay.speed, "2 plays twice as fast")
+      ->capture_default_str()
+      ->check(above_zero());
+  sub->add_flag("--loop", command->loop, "Begin again at the end, until Ctrl-C");
+  sub->add_option("--data-port", replay.data_port,
+                  "Port of the data packets; default: as in the capture");
+  sub->add_option("--position-port", replay.position_port,
+                  "Port of the position packets; default: as in the capture");
+  sub->callback([command] { run_replay(*command); });
+}
+
+}  // namespace lilo
