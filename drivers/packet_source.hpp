@@ -50,10 +50,14 @@ class PacketSource {
   [[nodiscard]] virtual SourceCounts counts() const = 0;
   /// Part of a file already read, in [0, 1]; 0 for a live source.
   [[nodiscard]] virtual double progress() const { return 0.0; }
+  /// Why the data ended early, one line for the user; empty while nothing is wrong. A file that
+  /// ends inside a record gives all it holds before this is set.
+  [[nodiscard]] virtual std::string error() const { return {}; }
 };
 
-/// UDP packets of a capture, in file order. "-" is standard input. Throws DriverError when the file
-/// is missing or is no capture; a file that ends inside a record ends there, and counts say so.
+/// UDP packets of a capture (pcap of either byte order and resolution, pcapng), in file order. "-"
+/// is standard input. Throws DriverError when the file is missing, empty or no capture; a file that
+/// ends inside a record ends there, and error() says so.
 std::unique_ptr<PacketSource> open_pcap(const std::string& path);
 
 struct UdpConfig {
@@ -65,7 +69,16 @@ struct UdpConfig {
   int receive_buffer_bytes = 4 << 20;  ///< asked of the kernel, which may grant less
 };
 
-/// Live packets. Throws DriverError when the address cannot be bound.
-std::unique_ptr<PacketSource> open_udp(const UdpConfig& config);
+/// Live packets. Two ports of one sensor, whichever has one first.
+class UdpSource : public PacketSource {
+ public:
+  /// What the kernel granted of UdpConfig::receive_buffer_bytes, as it counts it (getsockopt).
+  [[nodiscard]] virtual int receive_buffer_bytes() const = 0;
+  /// The port data come in on: the configured one, or the kernel's choice where that was 0.
+  [[nodiscard]] virtual std::uint16_t data_port() const = 0;
+};
+
+/// Throws DriverError when an address is none or cannot be bound.
+std::unique_ptr<UdpSource> open_udp(const UdpConfig& config);
 
 }  // namespace lilo

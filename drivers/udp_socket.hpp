@@ -1,0 +1,61 @@
+#pragma once
+
+#include "drivers/packet_source.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <sys/socket.h>
+
+namespace lilo {
+
+/// One port, read many datagrams at a time into fixed slots, with the kernel's receive times and
+/// its count of what it had to drop. Boost.Asio opens and configures; recvmmsg reads.
+class UdpSocket {
+ public:
+  /// Throws DriverError naming what cannot be had.
+  UdpSocket(boost::asio::io_context& context, const UdpConfig& config, std::uint16_t port);
+
+  /// Takes what is waiting, without waiting. False when there was nothing.
+  bool fill();
+  /// The next datagram taken, of any sender; false when all were given out. `truncated` tells that
+  /// it was longer than a slot.
+  bool next(PacketView& packet, bool& truncated);
+
+  [[nodiscard]] int native() { return socket_.native_handle(); }
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] int receive_buffer_bytes() const { return receive_buffer_bytes_; }
+  /// Datagrams the kernel dropped because the buffer was full (SO_RXQ_OVFL).
+  [[nodiscard]] std::uint64_t kernel_dropped() const { return kernel_dropped_; }
+
+ private:
+  static constexpr std::size_t kSlots = 64;
+  static constexpr std::size_t kSlotBytes = 1536;
+  static constexpr std::size_t kControlBytes = 128;
+
+  struct Slot {
+    alignas(16) std::array<std::byte, kSlotBytes> bytes;
+    alignas(cmsghdr) std::array<std::byte, kControlBytes> control;
+    sockaddr_storage sender;
+    iovec vector;
+  };
+
+  void configure(const UdpConfig& config);
+  void read_control(msghdr& header, PacketView& packet);
+
+  boost::asio::ip::udp::socket socket_;
+  std::uint16_t port_ = 0;
+  int receive_buffer_bytes_ = 0;
+  std::array<Slot, kSlots> slots_{};
+  std::array<mmsghdr, kSlots> headers_{};
+  std::size_t filled_ = 0, given_ = 0;
+  std::uint32_t drop_counter_ = 0;
+  std::uint64_t kernel_dropped_ = 0;
+};
+
+}  // namespace lilo
