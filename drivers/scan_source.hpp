@@ -22,7 +22,10 @@ class ScanSource {
   virtual bool next(Scan& scan) = 0;
   [[nodiscard]] virtual DriverCounts driver_counts() const = 0;
   [[nodiscard]] virtual SourceCounts source_counts() const = 0;
+  /// Part of the recording already read, in [0, 1]; 0 where that cannot be known.
   [[nodiscard]] virtual double progress() const = 0;
+  /// Why the recording ended early, one line for the user; empty while nothing is wrong.
+  [[nodiscard]] virtual std::string error() const { return {}; }
 };
 
 /// `path`: a pcap ("-" for standard input), a folder of NNNNNN.bin scans, or a KITTI sequences/NN

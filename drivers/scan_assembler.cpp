@@ -1,0 +1,171 @@
+#include "drivers/scan_assembler.hpp"
+
+#include "drivers/azimuth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lilo {
+namespace {
+
+constexpr double kTurn = wire::kTicksPerTurn;
+constexpr double kBackwardTicks = 1000.0;  // encoder noise and late columns, not a whole turn less
+constexpr int kAgainstPackets = 20;        // before a change of direction is believed
+// The slowest head turns at 5 Hz. One that has not come round after this is standing still.
+constexpr std::int64_t kMaxScanNs = 500'000'000;
+
+}  // namespace
+
+ScanAssembler::ScanAssembler(const SensorConfig& config, Scan& target, ScanSink& sink)
+    : cut_ticks_(wrap_ticks(config.cut_azimuth_rad / wire::kRadPerTick)),
+      max_hole_ticks_(config.max_hole_rad / wire::kRadPerTick),
+      scan_(&target),
+      sink_(sink) {}
+
+void ScanAssembler::add(const PacketDecoder& decoder, std::int64_t line_ns,
+                        PacketSequence::Verdict verdict, SensorClock& clock) {
+  if (verdict.arrival == PacketSequence::Arrival::restart) interrupt(clock);
+  follow_direction(decoder.ticks_per_ns(), clock);
+  if (verdict.lost > 0) spread_loss(verdict.lost, decoder.packet_period_ns(), line_ns);
+  for (std::size_t i = 0; i < decoder.columns().size(); ++i) add_column(decoder, i, line_ns, clock);
+  if (in_scan_) ++counts_.received;
+}
+
+bool ScanAssembler::add_late(const PacketDecoder& decoder, std::int64_t line_ns) {
+  if (!in_scan_) return false;
+  bool used = false;
+  const auto columns = decoder.columns();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::int64_t column_ns = line_ns + columns[i].first_ns;
+    if (column_ns < scan_start_ns_) continue;
+    used = true;
+    auto& returns = scan_->returns;
+    const auto t_ns = static_cast<std::int32_t>(column_ns - scan_start_ns_);
+    const auto place = std::upper_bound(returns.begin(), returns.end(), t_ns,
+                                        [](std::int32_t t, const Return& r) { return t < r.t_ns; });
+    const auto place_index = place - returns.begin();
+    const auto old_size = static_cast<std::ptrdiff_t>(returns.size());
+    decoder.append(i, t_ns, returns);
+    std::rotate(returns.begin() + place_index, returns.begin() + old_size, returns.end());
+    coverage_.mark(phase_of(columns[i].azimuth_ticks));
+    scan_end_ns_ = std::max(scan_end_ns_, line_ns + columns[i].last_ns);
+  }
+  if (used) {
+    ++counts_.reordered;
+    ++counts_.received;
+    counts_.lost -= std::min(counts_.lost, 1U);
+  }
+  return used;
+}
+
+double ScanAssembler::phase_of(double azimuth_ticks) const {
+  return wrap_ticks(direction_ * (azimuth_ticks - cut_ticks_));
+}
+
+// Lost packets before the cut belong to the scan that ends there, the others to the next one.
+void ScanAssembler::spread_loss(std::uint32_t lost, double period_ns, std::int64_t line_ns) {
+  if (!has_column_) return;
+  const double gap_ns = lost * period_ns;
+  const double gap_start_ns = static_cast<double>(line_ns - column_ns_) - gap_ns;
+  // Only the turning speed can tell where in the gap the cut lies; the last scan's will do.
+  const double turn_ns = static_cast<double>(scan_end_ns_ - scan_start_ns_);
+  const double swept = std::max(phase_, 1.0);
+  const double to_cut_ns =
+      in_scan_ && swept > 0.05 * kTurn ? turn_ns * (kTurn - phase_) / swept : gap_start_ns + gap_ns;
+  const double before = std::clamp((to_cut_ns - gap_start_ns) / period_ns, 0.0, double{1} * lost);
+  const auto before_cut = static_cast<std::uint32_t>(std::llround(before));
+  counts_.lost += before_cut;
+  lost_after_cut_ = lost - before_cut;
+}
+
+void ScanAssembler::follow_direction(double ticks_per_ns, const SensorClock& clock) {
+  if (ticks_per_ns * direction_ >= 0.0) {
+    against_ = 0;
+    return;
+  }
+  ++against_;
+  if (has_column_ && against_ < kAgainstPackets) return;
+  interrupt(clock);
+  direction_ = -direction_;
+  against_ = 0;
+}
+
+// How far the head turned since the column before: the azimuths say it up to whole turns, the
+// stamps and the speed say how many turns. Negative when it went back a little.
+double ScanAssembler::sweep_to(double phase, std::int64_t column_ns, double ticks_per_ns) const {
+  double step = phase - phase_;
+  if (step < -kBackwardTicks) step += kTurn;
+  if (step > kTurn - kBackwardTicks) step -= kTurn;
+  const double expected = std::abs(ticks_per_ns) * static_cast<double>(column_ns - column_ns_);
+  return step + kTurn * std::max(0.0, std::round((expected - step) / kTurn));
+}
+
+void ScanAssembler::add_column(const PacketDecoder& decoder, std::size_t column,
+                               std::int64_t line_ns, SensorClock& clock) {
+  const Column& c = decoder.columns()[column];
+  const std::int64_t column_ns = line_ns + c.first_ns;
+  const double phase = phase_of(c.azimuth_ticks);
+  if (has_column_) {
+    const double sweep = sweep_to(phase, column_ns, decoder.ticks_per_ns());
+    if (phase_ + sweep >= kTurn) {
+      if (in_scan_) end_scan(clock, true);
+      cuts_passed_ += static_cast<std::uint64_t>((phase_ + sweep) / kTurn);
+      begin_scan(decoder, column_ns, clock);
+    }
+    if (sweep >= 0.0) phase_ = phase;
+  } else {
+    phase_ = phase;
+    has_column_ = true;
+  }
+  column_ns_ = column_ns;
+  if (!in_scan_) return;
+  if (column_ns - scan_start_ns_ > kMaxScanNs) {
+    ++stalls_;
+    interrupt(clock);
+    return;
+  }
+  coverage_.mark(phase);
+  scan_end_ns_ = line_ns + c.last_ns;
+  decoder.append(column, static_cast<std::int32_t>(column_ns - scan_start_ns_), scan_->returns);
+}
+
+void ScanAssembler::begin_scan(const PacketDecoder& decoder, std::int64_t column_ns,
+                               SensorClock& clock) {
+  clock.begin_scan(column_ns);
+  scan_->clear();
+  scan_->index = cuts_passed_ - 1;
+  scan_->beams = decoder.beams();
+  in_scan_ = true;
+  scan_start_ns_ = column_ns;
+  scan_end_ns_ = column_ns;
+  coverage_.clear();
+  counts_ = {.lost = lost_after_cut_};
+  lost_after_cut_ = 0;
+}
+
+void ScanAssembler::end_scan(const SensorClock& clock, bool whole) {
+  const Coverage::Hole hole = coverage_.largest_hole();
+  Scan& scan = *scan_;
+  scan.start_ns = clock.to_utc_ns(scan_start_ns_);
+  scan.end_ns = clock.to_utc_ns(scan_end_ns_);
+  scan.clock = clock.source();
+  scan.complete = whole && hole.width_ticks <= max_hole_ticks_;
+  scan.coverage_rad = static_cast<float>(coverage_.covered_ticks() * wire::kRadPerTick);
+  if (hole.width_ticks > 0.0) {
+    scan.hole_start_rad = ccw_rad_from_ticks(cut_ticks_ + direction_ * hole.start_ticks);
+    scan.hole_width_rad = static_cast<float>(hole.width_ticks * wire::kRadPerTick);
+  }
+  scan.packets = counts_;
+  scan.packets.expected = counts_.received + counts_.lost;
+  ++(scan.complete ? scans_complete_ : scans_partial_);
+  in_scan_ = false;
+  scan_ = &sink_.exchange(scan);
+}
+
+void ScanAssembler::interrupt(const SensorClock& clock) {
+  if (in_scan_) end_scan(clock, false);
+  has_column_ = false;
+  lost_after_cut_ = 0;
+}
+
+}  // namespace lilo

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "drivers/azimuth.hpp"
+#include "drivers/packet_decoder.hpp"
+#include "drivers/sensor_config.hpp"
+
+#include <array>
+
+namespace lilo {
+
+enum class ReturnMode : std::uint8_t { strongest, last, dual };
+
+/// VLP-16, Puck LITE (product 0x22) and Puck Hi-Res (0x24). Manual 63-9243 rev. D, chapter 9.
+///
+/// A firing sequence is 16 lasers 2.304 us apart and 18.432 us of recharge, 55.296 us in all; a
+/// block holds two of them. The stamp is the first firing in the packet (9.4). The head turns
+/// between lasers, so each laser's azimuth is the block's plus turning speed times its delay.
+/// With azimuth a (clockwise), elevation w, distance r and the beam origin's height z0:
+///   x = r cos w cos a,  y = -r cos w sin a,  z = r sin w + z0,  z0 = 41.91 mm tan(-w).
+class Vlp16Decoder final : public PacketDecoder {
+ public:
+  explicit Vlp16Decoder(const SensorConfig& config);
+
+  bool load(DataPacket packet) override;
+  [[nodiscard]] std::span<const Column> columns() const override {
+    return {columns_.data(), column_count_};
+  }
+  [[nodiscard]] double ticks_per_ns() const override { return ticks_per_ns_; }
+  [[nodiscard]] double packet_period_ns() const override;
+  [[nodiscard]] const BeamTable& beams() const override { return beams_; }
+  void append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const override;
+
+  [[nodiscard]] ReturnMode mode() const { return mode_; }
+  [[nodiscard]] std::uint8_t product_id() const { return product_id_; }
+
+  static constexpr int kLasers = 16;
+  static constexpr std::uint8_t kProductVlp16 = 0x22;
+  static constexpr std::uint8_t kProductHiRes = 0x24;
+
+ private:
+  struct Beam {
+    float cos_elevation, sin_elevation, origin_z_m;
+  };
+  struct Echo {
+    std::uint16_t steps;
+    bool in_range;
+  };
+  struct Turn {  // how far the head has turned when a laser of the block fires
+    std::array<float, wire::kChannelsPerBlock> cos, sin, rad;
+  };
+
+  void set_product(std::uint8_t product_id);
+  [[nodiscard]] ReturnMode find_mode(const std::byte* packet) const;
+  void measure_turn(const std::byte* packet);
+  void place_columns(const std::byte* packet);
+  void project(const std::byte* block, int sequence, std::int32_t t_ns, ReturnKind kind,
+               std::array<Return, kLasers>& returns, std::array<Echo, kLasers>& echoes) const;
+  static void keep_in_range(const std::array<Return, kLasers>& returns,
+                            const std::array<Echo, kLasers>& echoes, std::vector<Return>& out);
+  void merge_dual(const std::array<Return, kLasers>& last,
+                  const std::array<Echo, kLasers>& last_echo,
+                  const std::array<Return, kLasers>& other,
+                  const std::array<Echo, kLasers>& other_echo, std::vector<Return>& out) const;
+
+  AzimuthTable azimuths_;
+  std::array<Beam, kLasers> beam_{};
+  std::array<std::uint8_t, kLasers> ring_{};
+  BeamTable beams_;
+  int min_steps_, max_steps_;  // range limits in distance steps
+  ReturnChoice choice_;
+
+  const std::byte* packet_ = nullptr;
+  std::uint8_t product_id_ = 0;
+  ReturnMode mode_ = ReturnMode::strongest;
+  double ticks_per_ns_ = 0.0;
+  Turn turn_{};
+  std::size_t column_count_ = 0;
+  std::array<Column, std::size_t{2} * wire::kBlocks> columns_{};
+};
+
+}  // namespace lilo
