@@ -1,0 +1,159 @@
+#include "drivers/kitti_scans.hpp"
+
+#include "drivers/kitti_rings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <vector>
+
+namespace lilo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kScanPeriodNs = 100'000'000;
+constexpr double kNsPerSecond = 1e9;
+
+struct Entry {
+  fs::path file;
+  std::uint64_t number;
+};
+
+// The scans of a folder, by number.
+std::vector<Entry> list_scans(const fs::path& folder) {
+  std::vector<Entry> entries;
+  for (const auto& item : fs::directory_iterator(folder)) {
+    if (item.path().extension() != ".bin") continue;
+    const std::string stem = item.path().stem().string();
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
+    if (error == std::errc{} && end == stem.data() + stem.size())
+      entries.push_back({item.path(), number});
+  }
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& a, const Entry& b) { return a.number < b.number; });
+  return entries;
+}
+
+// One number of seconds a line.
+std::vector<std::int64_t> read_times(const fs::path& file) {
+  std::vector<std::int64_t> times_ns;
+  std::ifstream in(file);
+  std::string line;
+  while (std::getline(in, line)) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    double seconds = 0.0;
+    const char* begin = line.data() + line.find_first_not_of(" \t");
+    const auto [end, error] = std::from_chars(begin, line.data() + line.size(), seconds);
+    if (error != std::errc{} || !(std::abs(seconds) < 1e10))
+      throw DriverError(file.string() + ":" + std::to_string(times_ns.size() + 1) +
+                        ": expected a time in seconds, found \"" + line + "\"");
+    times_ns.push_back(std::llround(seconds * kNsPerSecond));
+  }
+  return times_ns;
+}
+
+Return to_return(const std::array<float, 4>& point) {
+  constexpr float kPi = std::numbers::pi_v<float>;
+  const auto [x, y, z, intensity] = point;
+  const float azimuth = std::atan2(y, x);
+  return {.x_m = x,
+          .y_m = y,
+          .z_m = z,
+          .azimuth_rad = azimuth < kPi ? azimuth : -kPi,
+          .t_ns = static_cast<std::int32_t>(kScanPeriodNs),
+          .ring = 0,
+          .intensity =
+              static_cast<std::uint8_t>(std::lround(std::clamp(intensity, 0.0F, 1.0F) * 255.0F)),
+          .kind = ReturnKind::strongest};
+}
+
+class KittiScans final : public ScanSource {
+ public:
+  KittiScans(const fs::path& folder, const SensorConfig& config) : config_(config) {
+    const bool is_sequence = fs::is_directory(folder / "velodyne");
+    scans_ = list_scans(is_sequence ? folder / "velodyne" : folder);
+    if (scans_.empty())
+      throw DriverError(folder.string() + ": expected scans named NNNNNN.bin, found none");
+    for (const fs::path& file : {folder / "times.txt", folder.parent_path() / "times.txt"}) {
+      if (!fs::is_regular_file(file)) continue;
+      times_ns_ = read_times(file);
+      break;
+    }
+  }
+
+  bool next(Scan& scan) override {
+    if (position_ == scans_.size()) return false;
+    const Entry& entry = scans_[position_++];
+    scan.clear();
+    scan.index = entry.number - scans_.front().number;
+    scan.end_ns = entry.number < times_ns_.size()
+                      ? times_ns_[entry.number]
+                      : static_cast<std::int64_t>(scan.index) * kScanPeriodNs;
+    scan.start_ns = scan.end_ns - kScanPeriodNs;
+    scan.clock = ClockSource::replay;
+    scan.motion_compensated = true;
+    scan.complete = read_points(entry.file, scan.returns);
+    scan.coverage_rad = scan.complete ? 2.0F * std::numbers::pi_v<float> : 0.0F;
+    recover_kitti_rings(scan.returns, scan.beams);
+    keep_in_range(scan.returns);
+    ++(scan.complete ? counts_.scans_complete : counts_.scans_partial);
+    return true;
+  }
+  [[nodiscard]] DriverCounts driver_counts() const override { return counts_; }
+  [[nodiscard]] SourceCounts source_counts() const override { return {}; }
+  [[nodiscard]] double progress() const override {
+    return static_cast<double>(position_) / static_cast<double>(scans_.size());
+  }
+  [[nodiscard]] std::string error() const override { return error_; }
+
+ private:
+  bool read_points(const fs::path& file, std::vector<Return>& returns) {
+    std::ifstream in(file, std::ios::binary);
+    buffer_.resize(in ? fs::file_size(file) : 0);
+    in.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    std::array<float, 4> point;
+    if (buffer_.empty() || !in || buffer_.size() % sizeof(point) != 0) {
+      error_ = file.string() + ": expected float32 x y z intensity per point, found " +
+               std::to_string(buffer_.size()) + " bytes";
+      return false;
+    }
+    for (std::size_t at = 0; at < buffer_.size(); at += sizeof(point)) {
+      std::copy_n(buffer_.data() + at, sizeof(point), reinterpret_cast<char*>(point.data()));
+      if (std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]))
+        returns.push_back(to_return(point));
+    }
+    return true;
+  }
+
+  // After the rings: those are told by the order of all points.
+  void keep_in_range(std::vector<Return>& returns) const {
+    const auto out_of_range = [this](const Return& r) {
+      const auto range_m = static_cast<double>(std::hypot(r.x_m, r.y_m, r.z_m));
+      return range_m < config_.min_range_m || range_m > config_.max_range_m;
+    };
+    std::erase_if(returns, out_of_range);
+  }
+
+  SensorConfig config_;
+  std::vector<Entry> scans_;
+  std::vector<std::int64_t> times_ns_;
+  std::vector<char> buffer_;
+  std::size_t position_ = 0;
+  DriverCounts counts_;
+  std::string error_;
+};
+
+}  // namespace
+
+std::unique_ptr<ScanSource> open_kitti_scans(const std::string& folder,
+                                             const SensorConfig& config) {
+  return std::make_unique<KittiScans>(fs::path(folder), config);
+}
+
+}  // namespace lilo
