@@ -1,5 +1,7 @@
 #include "core/odometry.hpp"
 
+#include "core/paper/paper_odometry.hpp"
+
 namespace lilo {
 
 const char* to_string(Stage stage) {
@@ -20,11 +22,17 @@ const char* to_string(Stage stage) {
   return "unknown";
 }
 
-Odometry::Odometry(const OdometryConfig& config) : config_(config) {}
+struct Odometry::Impl {
+  paper::PaperOdometry paper;
+};
+
+Odometry::Odometry(const OdometryConfig& config)
+    : impl_(std::make_unique<Impl>(Impl{paper::PaperOdometry(config)})) {}
+
+Odometry::~Odometry() = default;
 
 Estimate Odometry::process(const Scan& scan, StageHook hook) {
-  hook(Stage::project);
-  return {.scan_index = scan.index, .stamp_ns = scan.end_ns};
+  return impl_->paper.process(scan, hook);
 }
 
 }  // namespace lilo

@@ -4,6 +4,8 @@
 #include "core/odometry_config.hpp"
 #include "core/scan.hpp"
 
+#include <memory>
+
 namespace lilo {
 
 /// The stations of the pipeline, for those who time it.
@@ -25,13 +27,17 @@ struct StageHook {
 class Odometry {
  public:
   explicit Odometry(const OdometryConfig& config);
+  ~Odometry();
+  Odometry(const Odometry&) = delete;
+  Odometry& operator=(const Odometry&) = delete;
 
   /// Takes the next scan and says where the sensor was at its last firing. Never throws on data:
   /// a scan too poor to align gives the prediction with status `lost`.
   Estimate process(const Scan& scan, StageHook hook = {});
 
  private:
-  OdometryConfig config_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace lilo

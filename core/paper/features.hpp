@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/paper/range_image.hpp"
+#include "core/pose.hpp"
+
+#include <opencv2/core.hpp>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+/// From labelled pixels back to points: Section 3.3.
+namespace lilo::paper {
+
+/// A point of a scan or of the map. `intensity` holds when it was measured, as a part of the
+/// scan's duration in [0, 1]; the map ignores it.
+using Point = pcl::PointXYZI;
+using Cloud = pcl::PointCloud<Point>;
+
+/// P_E, P_S and P_G of Eq. 20, each point in the sensor's frame of its own instant.
+struct Features {
+  Cloud::Ptr edges{new Cloud};
+  Cloud::Ptr surfaces{new Cloud};
+  Cloud::Ptr ground{new Cloud};
+};
+
+/// Eqs. 14-20. The paper rebuilds x and y from the column's centre and z from the image Pz; at
+/// 0.5 degrees a column is 17 cm wide at 20 m, so here the pixel's own return is taken. Pixels that
+/// interpolation made lie on the straight line between their two returns.
+Features reconstruct(const Scan& scan, const RangeImage& image, const cv::Mat1b& labels);
+
+/// Section 4: PCL voxel grid, one centroid a voxel of `leaf_m`.
+Cloud::Ptr voxel_grid(const Cloud::Ptr& cloud, double leaf_m);
+
+/// Moves every point from the sensor's frame at its own instant to the frame at the end of the
+/// scan. `T_start_end`: the sensor's motion during the scan, at constant velocity (F-LOAM).
+void deskew(const Pose& T_start_end, const Cloud& raw, Cloud& deskewed);
+
+}  // namespace lilo::paper

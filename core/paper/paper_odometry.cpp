@@ -1,0 +1,136 @@
+#include "core/paper/paper_odometry.hpp"
+
+#include "core/paper/segmentation.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace lilo::paper {
+namespace {
+
+/// Rows that look above the horizon can hold no ground.
+int first_ground_row(const BeamTable& beams, int rows) {
+  int above = 0;
+  for (int ring = 0; ring < beams.ring_count; ++ring) {
+    if (beams.elevation_rad[static_cast<std::size_t>(ring)] >= 0.0F) ++above;
+  }
+  return above * std::max(1, rows / std::max(1, beams.ring_count));
+}
+
+Cloud::Ptr surfaces_of(const Features& features, FeatureGroup group) {
+  Cloud::Ptr cloud(new Cloud);
+  if (group != FeatureGroup::EG) *cloud += *features.surfaces;
+  if (group != FeatureGroup::ES) *cloud += *features.ground;
+  return cloud;
+}
+
+/// The motion of `twist` over dt_s: the pose of the later frame in the earlier one.
+Pose motion_of(const Twist& twist, double dt_s) {
+  return {so3_exp(dt_s * twist.angular_radps), dt_s * twist.linear_mps};
+}
+
+Reduced deskew_all(const Reduced& raw, const Twist& twist, double duration_s) {
+  const Pose T_start_end = motion_of(twist, duration_s);
+  Reduced deskewed;
+  deskew(T_start_end, *raw.edges, *deskewed.edges);
+  deskew(T_start_end, *raw.surfaces, *deskewed.surfaces);
+  return deskewed;
+}
+
+double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+}  // namespace
+
+PaperOdometry::PaperOdometry(const OdometryConfig& config)
+    : config_(config),
+      edge_map_(config.paper.edge_voxel_m, config.paper.map_radius_m),
+      surface_map_(config.paper.surface_voxel_m, config.paper.map_radius_m) {}
+
+Estimate PaperOdometry::process(const Scan& scan, StageHook hook) {
+  const double duration_s = scan.motion_compensated ? 0.0 : seconds(scan.end_ns - scan.start_ns);
+  const double dt_s = seconds(scan.end_ns - last_end_ns_);
+
+  const RangeImage image = make_image(scan);
+  hook(Stage::project);
+  const cv::Mat1b labels =
+      segment(image.range_m, config_.paper, first_ground_row(scan.beams, image.rows()));
+  hook(Stage::filter);
+  const Reduced reduced = reduce(reconstruct(scan, image, labels));
+  hook(Stage::reconstruct);
+  const Reduced predicted = deskew_all(reduced, twist_, duration_s);
+  hook(Stage::deskew);
+  const Alignment alignment = align_to_map(predicted, dt_s);
+  hook(Stage::align);
+  advance(alignment, dt_s);
+  // F-LOAM's second stage: the points enter the map deskewed by the motion that was found.
+  update_maps(deskew_all(reduced, twist_, duration_s));
+  hook(Stage::update_map);
+
+  last_end_ns_ = scan.end_ns;
+  ++scan_count_;
+  Estimate result = estimate(scan, alignment);
+  result.edge_count = static_cast<int>(reduced.edges->size());
+  result.surface_count = static_cast<int>(reduced.surfaces->size());
+  return result;
+}
+
+RangeImage PaperOdometry::make_image(const Scan& scan) const {
+  RangeImage image;
+  project(scan, config_.paper.columns, config_.min_range_m, config_.max_range_m, image);
+  if (config_.paper.interpolated_rows <= image.rows()) return image;
+  RangeImage taller;
+  interpolate_rows(image, config_.paper.interpolated_rows, taller);
+  return taller;
+}
+
+Reduced PaperOdometry::reduce(const Features& features) const {
+  return {voxel_grid(features.edges, config_.paper.edge_voxel_m),
+          voxel_grid(surfaces_of(features, config_.paper.group), config_.paper.surface_voxel_m)};
+}
+
+Alignment PaperOdometry::align_to_map(const Reduced& scan, double dt_s) const {
+  Alignment alignment;
+  if (scan_count_ == 0) return alignment;
+  alignment.T_odom_sensor = T_odom_sensor_ * motion_of(twist_, dt_s);
+  // The sensor may be moving when it is switched on: until a motion is known the guess is off by a
+  // whole step, and the search begins wide.
+  constexpr std::array<double, 3> kSearch = {3.0, 2.0, 1.0};
+  const bool motion_known = scan_count_ >= 3;
+  for (std::size_t k = motion_known ? kSearch.size() - 1 : 0; k < kSearch.size(); ++k) {
+    alignment = align(*scan.edges, *scan.surfaces, edge_map_, surface_map_, alignment.T_odom_sensor,
+                      kSearch[k] * config_.paper.neighbourhood_m, config_.paper);
+  }
+  return alignment;
+}
+
+void PaperOdometry::advance(const Alignment& alignment, double dt_s) {
+  if (scan_count_ == 0 || dt_s <= 0.0) return;
+  const Pose motion = T_odom_sensor_.inverse() * alignment.T_odom_sensor;
+  twist_ = {motion.translation_m / dt_s, so3_log(motion.rotation) / dt_s};
+  T_odom_sensor_ = alignment.T_odom_sensor;
+}
+
+void PaperOdometry::update_maps(const Reduced& scan) {
+  edge_map_.update({scan.edges.get()}, T_odom_sensor_);
+  surface_map_.update({scan.surfaces.get()}, T_odom_sensor_);
+}
+
+Estimate PaperOdometry::estimate(const Scan& scan, const Alignment& alignment) const {
+  Estimate e;
+  e.scan_index = scan.index;
+  e.stamp_ns = scan.end_ns;
+  e.T_odom_sensor = T_odom_sensor_;
+  e.twist = twist_;
+  e.status = scan_count_ == 1            ? TrackingStatus::initializing
+             : alignment.converged       ? TrackingStatus::tracking
+             : alignment.iterations == 0 ? TrackingStatus::lost
+                                         : TrackingStatus::degraded;
+  e.map_edge_count = static_cast<int>(edge_map_.cloud().size());
+  e.map_surface_count = static_cast<int>(surface_map_.cloud().size());
+  e.correspondence_count = alignment.correspondences;
+  e.iterations = alignment.iterations;
+  e.residual_rms_m = alignment.residual_rms_m;
+  return e;
+}
+
+}  // namespace lilo::paper

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/odometry.hpp"
+#include "core/paper/local_map.hpp"
+#include "core/paper/registration.hpp"
+
+namespace lilo::paper {
+
+/// Edges and surfaces (with ground or without, by group), one point a voxel.
+struct Reduced {
+  Cloud::Ptr edges{new Cloud};
+  Cloud::Ptr surfaces{new Cloud};
+};
+
+/// The LiLO paper's odometry, Figure 1, with PCL's kd-trees and voxel grids. Allocates as PCL does.
+class PaperOdometry {
+ public:
+  explicit PaperOdometry(const OdometryConfig& config);
+  Estimate process(const Scan& scan, StageHook hook);
+
+ private:
+  [[nodiscard]] RangeImage make_image(const Scan& scan) const;
+  [[nodiscard]] Reduced reduce(const Features& features) const;
+  [[nodiscard]] Alignment align_to_map(const Reduced& scan, double dt_s) const;
+  void advance(const Alignment& alignment, double dt_s);
+  void update_maps(const Reduced& scan);
+  [[nodiscard]] Estimate estimate(const Scan& scan, const Alignment& alignment) const;
+
+  OdometryConfig config_;
+  LocalMap edge_map_, surface_map_;
+  Pose T_odom_sensor_;
+  Twist twist_;  // of the sensor over the last interval
+  std::int64_t last_end_ns_ = 0;
+  int scan_count_ = 0;
+};
+
+}  // namespace lilo::paper

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/scan.hpp"
+
+#include <opencv2/core.hpp>
+
+#include <cstdint>
+#include <vector>
+
+/// The spherical range image of the paper, Section 3.1.
+namespace lilo::paper {
+
+/// Where a pixel's value comes from: one return, or a point between the returns of two beams.
+struct Pixel {
+  std::int32_t first = -1;   ///< index into Scan::returns; -1: the pixel is empty
+  std::int32_t second = -1;  ///< -1: the pixel is `first` itself
+  float weight = 0.0F;       ///< of `second`, in (0, 1)
+};
+
+/// M x N image I of ranges (Eq. 3) and, beside it, the return behind every pixel, so that
+/// reconstruction gives back the exact point instead of the pixel's centre.
+/// Row 0 is the highest beam; column j looks along azimuth pi - 2 pi j / N (Eq. 16).
+struct RangeImage {
+  cv::Mat1f range_m;  ///< 0 where empty
+  std::vector<Pixel> pixels;
+
+  [[nodiscard]] int rows() const { return range_m.rows; }
+  [[nodiscard]] int columns() const { return range_m.cols; }
+  [[nodiscard]] const Pixel& at(int row, int column) const {
+    return pixels[static_cast<std::size_t>(row * range_m.cols + column)];
+  }
+  [[nodiscard]] Pixel& at(int row, int column) {
+    return pixels[static_cast<std::size_t>(row * range_m.cols + column)];
+  }
+};
+
+/// Range of a return from the sensor's centre, Eq. 2 (the norm of the three coordinates).
+float range_of(const Return& r);
+
+/// Eqs. 2-5: one row a beam, `columns` over the full turn. Of several returns in one pixel the
+/// nearest wins: it is the one that hides the others. Returns nearer than `min_range_m` or farther
+/// than `max_range_m` are left out.
+void project(const Scan& scan, int columns, double min_range_m, double max_range_m,
+             RangeImage& image);
+
+/// Section 3.1, bilinear interpolation of a 16-beam image to `rows` rows (a multiple of its own).
+/// The paper interpolates everywhere; across a depth jump that invents points in free space, so
+/// here a row is filled only between two returns whose ranges differ by less than 20 % of the
+/// nearer one.
+void interpolate_rows(const RangeImage& image, int rows, RangeImage& taller);
+
+}  // namespace lilo::paper
