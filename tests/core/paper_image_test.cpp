@@ -90,7 +90,8 @@ TEST(Interpolation, KeepsToTheSurfaceAndNeverBridgesAJump) {
   // Every point, made or measured, lies on a wall, on the ground or on a pole. A chord across the
   // corner of ground and wall cuts half the beams' spacing deep: 35 cm at 20 m. A ghost between a
   // pole and the wall behind it would be metres off.
-  for (const Point& p : *reconstruct(scan, taller, labels).surfaces) {
+  const Features features = reconstruct(scan, taller, labels);
+  for (const Point& p : *features.surfaces) {
     const Eigen::Vector3d q = p.getVector3fMap().cast<double>();
     double nearest = 1e9;
     for (const auto& plane : scene.planes) {
