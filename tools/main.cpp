@@ -1,5 +1,6 @@
 #include "tools/eval/eval_command.hpp"
 #include "tools/listen/listen_command.hpp"
+#include "tools/sim/sim_command.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +18,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   lilo::add_eval_command(app);
   lilo::add_listen_command(app);
+  lilo::add_sim_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
