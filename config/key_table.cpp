@@ -3,7 +3,8 @@
 #include "config/text_forms.hpp"
 
 // The member of Config that a key sets. (The name of a member cannot stand in parentheses.)
-#define LILO_MEMBER(name) [](Config & c) -> auto& { return c.name; }  // NOLINT
+#define LILO_MEMBER(name) \
+  [](Config & c) -> auto& { return c.name; }  // NOLINT
 
 namespace lilo {
 namespace {
@@ -63,10 +64,52 @@ std::vector<Key> udp_keys() {
 
 std::vector<Key> odometry_keys() {
   return {
+      choice("odometry.profile", LILO_MEMBER(odometry.profile), {"paper"}, kRestart,
+             "Which odometry runs; paper: the method of the LiLO paper."),
       real("odometry.min_range_m", LILO_MEMBER(odometry.min_range_m), 0.0, 20.0, "m", kRestart,
            "Nearer returns are not used for odometry."),
       real("odometry.max_range_m", LILO_MEMBER(odometry.max_range_m), 5.0, 300.0, "m", kRestart,
-           "Farther returns are not used, and the map is cropped there."),
+           "Farther returns are not used for odometry."),
+  };
+}
+
+std::vector<Key> paper_keys() {
+  return {
+      integer("odometry.paper.columns", LILO_MEMBER(odometry.paper.columns), 90, 4096, "", kRestart,
+              "Width of the range image; the paper has 360, 720 and 1024."),
+      integer("odometry.paper.interpolated_rows", LILO_MEMBER(odometry.paper.interpolated_rows), 0,
+              128, "", kRestart,
+              "Height of the image after interpolation between beams; 0: one row a beam. The paper "
+              "has 32 for the VLP-16."),
+      choice(
+          "odometry.paper.ground_filter", LILO_MEMBER(odometry.paper.ground_filter),
+          {"sobel", "fourier"}, kRestart,
+          "How ground is told from the rest: sobel, large steps from ring to ring; fourier, rows "
+          "that hardly vary along azimuth."),
+      choice("odometry.paper.group", LILO_MEMBER(odometry.paper.group), {"EG", "ES", "EGS"},
+             kRestart,
+             "The features that align a scan: edges with ground, with surfaces, or with both."),
+      real("odometry.paper.sobel_edge_m", LILO_MEMBER(odometry.paper.sobel_edge_m), 0.05, 50.0, "m",
+           kRestart, "Horizontal Sobel response (gain 8) above which a pixel is an edge."),
+      real("odometry.paper.sobel_ground_m", LILO_MEMBER(odometry.paper.sobel_ground_m), 0.05, 50.0,
+           "m", kRestart, "Vertical Sobel response (gain 8) above which a pixel is ground."),
+      boolean("odometry.paper.drop_shadow_edges", LILO_MEMBER(odometry.paper.drop_shadow_edges),
+              kRestart,
+              "Keep the nearer side of a jump in depth only; the farther one is a shadow."),
+      real("odometry.paper.fourier_ratio", LILO_MEMBER(odometry.paper.fourier_ratio), 0.001, 1.0,
+           "", kRestart, "With fourier: ground is where less than this part of the range varies."),
+      real("odometry.paper.edge_voxel_m", LILO_MEMBER(odometry.paper.edge_voxel_m), 0.05, 5.0, "m",
+           kRestart, "Voxel grid of edges, in the scan and in the map. Larger is faster."),
+      real("odometry.paper.surface_voxel_m", LILO_MEMBER(odometry.paper.surface_voxel_m), 0.05, 5.0,
+           "m", kRestart, "The same for surfaces and ground."),
+      real("odometry.paper.neighbourhood_m", LILO_MEMBER(odometry.paper.neighbourhood_m), 0.1, 10.0,
+           "m", kRestart, "Radius of the map points that a line or a plane is fitted to."),
+      real("odometry.paper.map_radius_m", LILO_MEMBER(odometry.paper.map_radius_m), 10.0, 1000.0,
+           "m", kRestart, "The map is cropped to a box of this half-width around the sensor."),
+      real("odometry.paper.huber_m", LILO_MEMBER(odometry.paper.huber_m), 0.001, 10.0, "m",
+           kRestart, "Residuals beyond this weigh less."),
+      integer("odometry.paper.max_iterations", LILO_MEMBER(odometry.paper.max_iterations), 1, 100,
+              "", kRestart, "Gauss-Newton steps a scan, at most."),
   };
 }
 
@@ -105,6 +148,7 @@ std::vector<Section> config_sections() {
       {"sensor", "How packets become scans."},
       {"udp", "Where packets come from."},
       {"odometry", "How scans become poses."},
+      {"odometry.paper", "The choices of profile paper."},
       {"publish", "Where poses go."},
       {"realtime", "Real-time measures. One that the system refuses is a warning, not an error."},
   };
@@ -112,7 +156,8 @@ std::vector<Section> config_sections() {
 
 std::vector<Key> config_keys() {
   std::vector<Key> keys;
-  for (auto section : {sensor_keys, udp_keys, odometry_keys, publish_keys, realtime_keys}) {
+  for (auto section :
+       {sensor_keys, udp_keys, odometry_keys, paper_keys, publish_keys, realtime_keys}) {
     for (Key& key : section()) keys.push_back(std::move(key));
   }
   return keys;

@@ -39,13 +39,22 @@ bool in_section(const Key& key, const Section& section) {
   return key.path.substr(0, key.path.rfind('.')) == section.path;
 }
 
+std::string last_name(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+// Two spaces for every section around it.
+std::string margin_of(const std::string& path) {
+  std::string margin;
+  for (const char c : path) {
+    if (c == '.') margin += "  ";
+  }
+  return margin;
+}
+
 // Names of choices need no quotes.
 std::string value_of(const Key& key, const Config& config) {
   const Value value = key.get(config);
   return key.type == KeyType::choice ? std::get<std::string>(value) : to_yaml(value);
 }
-
-std::string name_of(const Key& key) { return key.path.substr(key.path.rfind('.') + 1); }
 
 }  // namespace
 
@@ -53,13 +62,16 @@ std::string print_config(const Config& config) {
   const Config defaults;
   std::string out;
   for (const Section& section : config_sections()) {
-    out += fmt::format("{}# {}\n{}:\n", out.empty() ? "" : "\n", section.meaning, section.path);
+    const std::string outer = margin_of(section.path);
+    if (!out.empty() && outer.empty()) out += '\n';
+    out += fmt::format("{}# {}\n{}{}:\n", outer, section.meaning, outer, last_name(section.path));
     for (const Key& key : config_keys()) {
       if (!in_section(key, section)) continue;
+      const std::string margin = margin_of(key.path);
       const std::string facts = fmt::format("{}; default {}. {}", capitalised(expected(key)),
                                             value_of(key, defaults), when(key.reload));
-      out += wrapped(key.meaning, "  #") + wrapped(facts, "  #");
-      out += fmt::format("  {}: {}\n", name_of(key), value_of(key, config));
+      out += wrapped(key.meaning, margin + '#') + wrapped(facts, margin + '#');
+      out += fmt::format("{}{}: {}\n", margin, last_name(key.path), value_of(key, config));
     }
   }
   return out;
@@ -75,7 +87,7 @@ std::string print_reference() {
     out += "| Key | Expected | Default | Reload | Meaning |\n|---|---|---|---|---|\n";
     for (const Key& key : config_keys()) {
       if (!in_section(key, section)) continue;
-      out += fmt::format("| `{}` | {} | `{}` | {} | {} |\n", name_of(key), expected(key),
+      out += fmt::format("| `{}` | {} | `{}` | {} | {} |\n", last_name(key.path), expected(key),
                          value_of(key, defaults), key.reload == Reload::live ? "live" : "restart",
                          key.meaning);
     }

@@ -63,6 +63,7 @@ TEST(PrintConfig, EveryKeyIsItsOwn) {
   const std::vector<Key> keys = config_keys();
   for (const Key& key : keys) {
     if (key.path.find("min_range") != std::string::npos) continue;  // bound to max_range
+    if (key.choices.size() == 1) continue;
     Config changed;
     const Value value = another_value(key, key.get(changed));
     key.set(changed, value);
