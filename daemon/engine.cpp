@@ -1,0 +1,92 @@
+#include "daemon/engine.hpp"
+
+#include <future>
+#include <optional>
+#include <pthread.h>
+#include <utility>
+
+namespace lilo {
+namespace {
+
+constexpr std::size_t kReportSlots = 64;  // 6 s of poses while the publisher is held up
+constexpr std::size_t kThreadStackBytes = 2 << 20;
+
+/// What a thread tells of itself before it starts work.
+struct ThreadStart {
+  ThreadPolicy policy;
+  std::vector<std::string> refusals;
+};
+
+ThreadStart enter_thread(const char* name, int cpu, int priority) {
+  ThreadStart out;
+  const auto note = [&](const std::optional<std::string>& refusal) {
+    if (refusal) out.refusals.push_back(std::string(name) + ": " + *refusal);
+  };
+  pthread_setname_np(pthread_self(), name);
+  if (cpu >= 0) note(pin_this_thread(cpu));
+  if (priority > 0) note(use_fifo_in_this_thread(priority));
+  out.policy = policy_of_this_thread();
+  return out;
+}
+
+template <typename Work>
+std::thread start_thread(const char* name, int cpu, int priority, std::future<ThreadStart>& started,
+                         Work work) {
+  std::promise<ThreadStart> promise;
+  started = promise.get_future();
+  return std::thread([=, promise = std::move(promise)]() mutable {
+    promise.set_value(enter_thread(name, cpu, priority));
+    work();
+  });
+}
+
+ScanRing& prepared(ScanRing& scans, SensorModel model) {
+  scans.for_each_slot([=](ScanSlot& slot) { prepare_slot(slot, model); });
+  return scans;
+}
+
+}  // namespace
+
+Engine::Engine(const Config& config, std::unique_ptr<PacketSource> source)
+    : realtime_(config.realtime),
+      scans_(static_cast<std::size_t>(config.realtime.ring_slots)),
+      reports_(kReportSlots),
+      receiver_(std::move(source), config.sensor, prepared(scans_, config.sensor.model),
+                scan_ready_, counters_),
+      worker_(config.odometry, scans_, scan_ready_, reports_, report_ready_, counters_) {}
+
+Engine::~Engine() { stop(); }
+
+RealtimeReport Engine::start() {
+  RealtimeReport report;
+  const auto note = [&](const std::optional<std::string>& refusal) {
+    if (refusal) report.refusals.push_back(*refusal);
+  };
+  note(limit_stack_of_new_threads(kThreadStackBytes));
+  if (realtime_.lock_memory) note(lock_all_memory());
+
+  const int priority = realtime_.worker_priority;
+  std::future<ThreadStart> worker, receiver;
+  worker_thread_ = start_thread("lilo-worker", realtime_.worker_cpu, priority, worker,
+                                [this] { worker_.run(); });
+  // One above the worker: a packet not taken in time is gone for good.
+  receiver_thread_ = start_thread("lilo-receiver", -1, priority > 0 ? priority + 1 : 0, receiver,
+                                  [this] { receiver_.run(); });
+  for (auto [started, policy] :
+       {std::pair{&worker, &report.worker}, std::pair{&receiver, &report.receiver}}) {
+    ThreadStart start = started->get();
+    *policy = start.policy;
+    for (std::string& refusal : start.refusals) report.refusals.push_back(std::move(refusal));
+  }
+  report.locked_memory_kb = locked_memory_kb();
+  return report;
+}
+
+void Engine::stop() {
+  counters_.stop.store(true);
+  scan_ready_.signal();
+  if (receiver_thread_.joinable()) receiver_thread_.join();
+  if (worker_thread_.joinable()) worker_thread_.join();
+}
+
+}  // namespace lilo

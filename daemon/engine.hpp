@@ -1,0 +1,58 @@
+#pragma once
+
+#include "config/config.hpp"
+#include "daemon/pipeline.hpp"
+#include "daemon/realtime.hpp"
+#include "daemon/receiver.hpp"
+#include "daemon/wakeup.hpp"
+#include "daemon/worker.hpp"
+
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace lilo {
+
+/// What is in force after start(), and what the system refused.
+struct RealtimeReport {
+  ThreadPolicy receiver, worker;
+  long locked_memory_kb = 0;
+  std::vector<std::string> refusals;
+};
+
+/// The receiver and the worker thread with what lies between them. The thread that owns the engine
+/// is the consumer of reports().
+class Engine {
+ public:
+  /// Takes the source, reserves all memory. Throws DriverError when the calibration cannot be read.
+  Engine(const Config& config, std::unique_ptr<PacketSource> source);
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  /// Starts both threads and returns once each has its policy.
+  RealtimeReport start();
+  /// Ends both threads and waits for them.
+  void stop();
+
+  [[nodiscard]] ReportRing& reports() { return reports_; }
+  [[nodiscard]] Wakeup& report_ready() { return report_ready_; }
+  [[nodiscard]] const PipelineCounters& counters() const { return counters_; }
+  [[nodiscard]] const Receiver& receiver() const { return receiver_; }
+  /// Scans that wait or are being processed.
+  [[nodiscard]] std::size_t scans_waiting() const { return scans_.size(); }
+
+ private:
+  RealtimeConfig realtime_;
+  PipelineCounters counters_;
+  Wakeup scan_ready_{Wakeup::Mode::blocking};
+  Wakeup report_ready_{Wakeup::Mode::polled};
+  ScanRing scans_;
+  ReportRing reports_;
+  Receiver receiver_;
+  Worker worker_;
+  std::thread receiver_thread_, worker_thread_;
+};
+
+}  // namespace lilo

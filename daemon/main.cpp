@@ -1,0 +1,77 @@
+#include "config/config.hpp"
+#include "config/print_config.hpp"
+#include "daemon/log.hpp"
+#include "daemon/service.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <string>
+
+namespace lilo {
+namespace {
+
+// Exit codes, also in README.md.
+constexpr int kSuccess = 0, kFailure = 1, kBadUsage = 2;
+
+struct Options {
+  std::string config_path;
+  bool check_config = false;
+  bool print_config = false;
+  bool print_reference = false;
+};
+
+int run(const Options& options) {
+  if (options.print_reference) {
+    std::cout << print_reference();
+    return kSuccess;
+  }
+  if (options.config_path.empty()) {
+    if (!options.print_config) throw CLI::RequiredError("--config FILE");
+    std::cout << print_config({});
+    return kSuccess;
+  }
+  const Config config = load_config(options.config_path);
+  if (options.print_config) std::cout << print_config(config);
+  if (options.check_config) std::cout << options.config_path << ": ok\n";
+  if (options.print_config || options.check_config) return kSuccess;
+  start_log();
+  Service(config, options.config_path).run();
+  return kSuccess;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"lilod: LiDAR odometry daemon. Packets in by UDP, poses out by UDP/JSON."};
+  app.set_version_flag("--version", "lilod " LILO_VERSION);
+  Options options;
+  app.add_option("--config", options.config_path, "YAML file; see config/vlp16.yaml");
+  app.add_flag("--check-config", options.check_config, "Check the file and end: 0 good, 2 bad");
+  app.add_flag("--print-config", options.print_config, "Print what is in force, and end");
+  app.add_flag("--print-reference", options.print_reference, "Print all keys as Markdown, and end");
+  try {
+    app.parse(argc, argv);
+    return run(options);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "lilod: %s (lilod --help)\n", error.what());
+    return kBadUsage;
+  } catch (const ConfigError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kBadUsage;
+  }
+}
+
+}  // namespace
+}  // namespace lilo
+
+int main(int argc, char** argv) {
+  try {
+    return lilo::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "lilod: %s\n", error.what());
+    return lilo::kFailure;
+  }
+}

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+/// sd_notify(3) in words. Each does nothing when systemd did not start us.
+namespace lilo::notify {
+
+void ready(const std::string& status);
+void status(const std::string& status);
+void reloading();
+void stopping();
+void watchdog();
+
+/// How often systemd wants to hear from us; 0: it does not care.
+std::int64_t watchdog_interval_us();
+
+}  // namespace lilo::notify

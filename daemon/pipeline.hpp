@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/estimate.hpp"
+#include "core/odometry.hpp"
+#include "core/scan.hpp"
+#include "drivers/scan_builder.hpp"
+#include "drivers/spsc_ring.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+/// What the three threads hand to each other:
+///   receiver ==ScanSlot==> worker ==PoseReport==> publisher, and counters that all may read.
+namespace lilo {
+
+struct ScanSlot {
+  Scan scan;
+  std::int64_t last_packet_ns = 0;  ///< monotonic time at which the packet that ended it arrived
+};
+
+struct PoseReport {
+  Estimate estimate;
+  std::uint64_t seq = 0;            ///< scans processed in this session before this one
+  std::int64_t last_packet_ns = 0;  ///< monotonic, as in ScanSlot
+  std::int64_t processing_ns = 0;   ///< time in Odometry::process
+  std::array<std::int64_t, kStageCount> stage_ns{};
+  PacketCounts packets;
+  ClockSource clock = ClockSource::host;
+  bool scan_complete = true;
+};
+
+using ScanRing = SpscRing<ScanSlot>;
+using ReportRing = SpscRing<PoseReport>;
+
+/// Each counter has one writer; any thread reads. Totals since the start.
+struct PipelineCounters {
+  std::atomic<std::uint64_t> scans_received{0};   ///< receiver
+  std::atomic<std::uint64_t> scans_overrun{0};    ///< receiver: no slot was free
+  std::atomic<std::uint64_t> scans_skipped{0};    ///< worker: passed over to catch up
+  std::atomic<std::uint64_t> scans_processed{0};  ///< worker
+  std::atomic<std::uint64_t> reports_dropped{0};  ///< worker: the publisher was asleep
+  std::atomic<bool> behind{false};                ///< receiver asks, worker answers by skipping
+  std::atomic<bool> stop{false};                  ///< publisher asks both to end
+};
+
+}  // namespace lilo

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "daemon/json_writer.hpp"
+#include "daemon/pipeline.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace lilo {
+
+/// Version of the protocol, PROTOCOL.md. Minor: something was added. Major: something changed.
+inline constexpr const char* kProtocolVersion = "1.0";
+
+const char* to_string(TrackingStatus status);
+
+/// Sixteen hexadecimal digits, new at every start: a gap in seq within one session is a loss, a new
+/// session is a restart.
+std::string new_session();
+
+/// What all pose datagrams of a session have in common.
+struct PoseMessageContext {
+  std::string session;
+  std::string frame_id;
+  std::string child_frame_id;
+};
+
+/// The pose datagram of PROTOCOL.md, in `out`'s buffer. Empty when there is none: a number every
+/// client relies on is not finite. Leaves the covariance out rather than outgrow the datagram.
+std::string_view write_pose(const PoseMessageContext& context, const PoseReport& report,
+                            std::int64_t now_ns, JsonWriter& out);
+
+}  // namespace lilo

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <sys/types.h>
+
+namespace lilo {
+
+/// What the kernel says of a thread, read back and not remembered.
+struct ThreadPolicy {
+  std::string policy;  ///< "SCHED_OTHER", "SCHED_FIFO", ...
+  int priority = 0;
+  std::string cpus;  ///< "0-3,7"
+};
+
+/// Each of these returns why the system refused, in one line for the log, or nothing.
+std::optional<std::string> pin_this_thread(int cpu);
+std::optional<std::string> use_fifo_in_this_thread(int priority);
+/// Locks what is and what will be mapped, and keeps malloc from giving memory back.
+std::optional<std::string> lock_all_memory();
+std::optional<std::string> limit_stack_of_new_threads(std::size_t bytes);
+
+ThreadPolicy policy_of_this_thread();
+
+/// Of /proc/self/status: bytes that mlock holds in memory.
+long locked_memory_kb();
+
+}  // namespace lilo

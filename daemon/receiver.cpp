@@ -1,0 +1,121 @@
+#include "daemon/receiver.hpp"
+
+#include "daemon/clock.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace lilo {
+namespace {
+
+constexpr std::chrono::milliseconds kReadTimeout{100};
+constexpr std::int64_t kLongestQueueNs = 1'000'000'000;
+
+void add(std::atomic<std::uint64_t>& counter) {
+  counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+}
+
+// When a packet reached this computer, on the monotonic clock: the kernel's stamp is UTC, so its
+// age is taken off now. A step of UTC in between may only bend one age, and within bounds.
+std::int64_t arrival_ns(const PacketView& packet) {
+  const std::int64_t age = realtime_ns() - packet.received_ns;
+  return monotonic_ns() - (age > 0 && age < kLongestQueueNs ? age : 0);
+}
+
+}  // namespace
+
+void SharedDriverCounts::store(const DriverCounts& driver, const SourceCounts& source) {
+  const std::array<std::uint64_t, 9> d{
+      driver.data_packets,   driver.position_packets,   driver.malformed_packets,
+      driver.packets_lost,   driver.packets_duplicated, driver.packets_reordered,
+      driver.scans_complete, driver.scans_partial,      driver.sensor_restarts};
+  const std::array<std::uint64_t, 5> s{source.packets, source.foreign, source.truncated,
+                                       source.fragments, source.kernel_dropped};
+  for (std::size_t i = 0; i < d.size(); ++i) driver_[i].store(d[i], std::memory_order_relaxed);
+  for (std::size_t i = 0; i < s.size(); ++i) source_[i].store(s[i], std::memory_order_relaxed);
+}
+
+DriverCounts SharedDriverCounts::driver() const {
+  const auto at = [&](std::size_t i) { return driver_[i].load(std::memory_order_relaxed); };
+  return {.data_packets = at(0),
+          .position_packets = at(1),
+          .malformed_packets = at(2),
+          .packets_lost = at(3),
+          .packets_duplicated = at(4),
+          .packets_reordered = at(5),
+          .scans_complete = at(6),
+          .scans_partial = at(7),
+          .sensor_restarts = at(8)};
+}
+
+SourceCounts SharedDriverCounts::source() const {
+  const auto at = [&](std::size_t i) { return source_[i].load(std::memory_order_relaxed); };
+  return {.packets = at(0),
+          .foreign = at(1),
+          .truncated = at(2),
+          .fragments = at(3),
+          .kernel_dropped = at(4)};
+}
+
+Receiver::Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sensor,
+                   ScanRing& scans, Wakeup& scan_ready, PipelineCounters& counters)
+    : source_(std::move(source)),
+      scans_(scans),
+      scan_ready_(scan_ready),
+      counters_(counters),
+      writing_(scans.reserve()),
+      builder_(sensor, writing_->scan, *this) {
+  prepare_slot(spare_, sensor.model);
+}
+
+void Receiver::run() {
+  PacketView packet;
+  while (!counters_.stop.load(std::memory_order_relaxed)) {
+    const ReadResult result = source_->read(packet, kReadTimeout);
+    if (result == ReadResult::packet) {
+      last_packet_ns_.store(arrival_ns(packet), std::memory_order_relaxed);
+      builder_.feed(packet);
+    } else {
+      share_counts();
+      if (result == ReadResult::end) return;
+    }
+  }
+}
+
+// The scan just written goes to the worker, and the next free slot is written. With all slots
+// taken, the spare one is written instead and the worker told; should it still be at work when the
+// spare is full too, that scan is given up.
+Scan& Receiver::exchange(Scan&) {
+  share_counts();
+  add(counters_.scans_received);
+  writing_->last_packet_ns = last_packet_ns_.load(std::memory_order_relaxed);
+  ScanSlot* slot = writing_;
+  if (writing_ == &spare_) {
+    slot = scans_.reserve();
+    if (slot != nullptr) std::swap(*slot, spare_);
+  }
+  if (slot != nullptr) {
+    scans_.commit();
+    scan_ready_.signal();
+  } else {
+    add(counters_.scans_overrun);
+  }
+  writing_ = scans_.reserve();
+  if (writing_ == nullptr) {
+    counters_.behind.store(true, std::memory_order_release);
+    writing_ = &spare_;
+  }
+  writing_->scan.clear();
+  return writing_->scan;
+}
+
+void prepare_slot(ScanSlot& slot, SensorModel model) {
+  // Dual returns at 10 Hz: VLP-16 754 packets x 12 blocks x 32 channels / 10; HDL-64E S3 four times
+  // that and more. A slower head outgrows it in its first turns, never again.
+  constexpr std::size_t kVlp16Returns = 64'000, kHdl64eReturns = 270'000;
+  slot.scan.returns.resize(model == SensorModel::vlp16 ? kVlp16Returns : kHdl64eReturns);
+  slot.scan.clear();
+}
+
+}  // namespace lilo

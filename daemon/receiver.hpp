@@ -1,0 +1,61 @@
+#pragma once
+
+#include "daemon/pipeline.hpp"
+#include "daemon/wakeup.hpp"
+#include "drivers/packet_source.hpp"
+#include "drivers/scan_builder.hpp"
+#include "drivers/sensor_config.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+namespace lilo {
+
+/// The drivers' totals for other threads: each number is true, though not all of one instant.
+class SharedDriverCounts {
+ public:
+  void store(const DriverCounts& driver, const SourceCounts& source);
+  [[nodiscard]] DriverCounts driver() const;
+  [[nodiscard]] SourceCounts source() const;
+
+ private:
+  std::array<std::atomic<std::uint64_t>, 9> driver_{};
+  std::array<std::atomic<std::uint64_t>, 5> source_{};
+};
+
+/// Packets to scans, on a thread of its own. Writes straight into ring slots. When the worker holds
+/// them all, the receiver writes into a spare one and asks the worker to skip to the newest scan.
+class Receiver : private ScanSink {
+ public:
+  Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sensor, ScanRing& scans,
+           Wakeup& scan_ready, PipelineCounters& counters);
+
+  /// Until counters.stop, or the end of a source that has one. No allocation once every slot has
+  /// held a scan.
+  void run();
+
+  /// Any thread.
+  [[nodiscard]] const SharedDriverCounts& driver_counts() const { return driver_counts_; }
+  /// Any thread: monotonic time of the last packet that was read; 0: none yet.
+  [[nodiscard]] std::int64_t last_packet_ns() const { return last_packet_ns_.load(); }
+
+ private:
+  Scan& exchange(Scan& finished) override;
+  void share_counts() { driver_counts_.store(builder_.counts(), source_->counts()); }
+
+  std::unique_ptr<PacketSource> source_;
+  ScanRing& scans_;
+  Wakeup& scan_ready_;
+  PipelineCounters& counters_;
+  ScanSlot spare_;
+  ScanSlot* writing_;
+  std::atomic<std::int64_t> last_packet_ns_{0};
+  SharedDriverCounts driver_counts_;
+  ScanBuilder builder_;
+};
+
+/// Reserves and touches the memory a scan of this sensor needs.
+void prepare_slot(ScanSlot& slot, SensorModel model);
+
+}  // namespace lilo

@@ -1,0 +1,82 @@
+#include "daemon/worker.hpp"
+
+#include "daemon/clock.hpp"
+
+namespace lilo {
+namespace {
+
+void add(std::atomic<std::uint64_t>& counter) {
+  counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+}
+
+/// Time between the ends of the stages. A stage that ends twice in a scan counts both.
+struct StageTimer {
+  std::array<std::int64_t, kStageCount> stage_ns{};
+  std::int64_t last_ns = monotonic_ns();
+
+  static void done(void* context, Stage stage) {
+    auto& timer = *static_cast<StageTimer*>(context);
+    const std::int64_t now = monotonic_ns();
+    timer.stage_ns[static_cast<std::size_t>(stage)] += now - timer.last_ns;
+    timer.last_ns = now;
+  }
+};
+
+}  // namespace
+
+Worker::Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready,
+               ReportRing& reports, Wakeup& report_ready, PipelineCounters& counters)
+    : odometry_(config),
+      scans_(scans),
+      scan_ready_(scan_ready),
+      reports_(reports),
+      report_ready_(report_ready),
+      counters_(counters) {}
+
+void Worker::run() {
+  while (!counters_.stop.load(std::memory_order_relaxed)) {
+    const ScanSlot* slot = scans_.front();
+    if (slot == nullptr) {
+      scan_ready_.wait();
+      continue;
+    }
+    process(*slot);
+    scans_.release();
+    if (counters_.behind.exchange(false, std::memory_order_acquire)) skip_to_newest();
+  }
+}
+
+// A robot wants the pose of now: once the ring was full, all waiting scans but the newest go. The
+// odometry sees the gap in the stamps.
+void Worker::skip_to_newest() {
+  while (scans_.size() > 1) {
+    scans_.release();
+    add(counters_.scans_skipped);
+  }
+}
+
+void Worker::process(const ScanSlot& slot) {
+  StageTimer timer;
+  const std::int64_t start_ns = timer.last_ns;
+  const Estimate estimate = odometry_.process(slot.scan, {StageTimer::done, &timer});
+  const std::int64_t end_ns = monotonic_ns();
+  PoseReport* report = reports_.reserve();
+  if (report != nullptr) {
+    *report = {.estimate = estimate,
+               .seq = seq_,
+               .last_packet_ns = slot.last_packet_ns,
+               .processing_ns = end_ns - start_ns,
+               .stage_ns = timer.stage_ns,
+               .packets = slot.scan.packets,
+               .clock = slot.scan.clock,
+               .scan_complete = slot.scan.complete};
+    reports_.commit();
+    report_ready_.signal();
+  } else {
+    add(counters_.reports_dropped);
+  }
+  ++seq_;
+  add(counters_.scans_processed);
+}
+
+}  // namespace lilo

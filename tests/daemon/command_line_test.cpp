@@ -1,0 +1,110 @@
+#include "config/config.hpp"
+#include "config/print_config.hpp"
+#include "tests/daemon/lilod_fixture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+
+namespace lilo {
+namespace {
+
+const std::string kLilod = LILO_BIN_DIR "/lilod";
+
+std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+
+TEST(CommandLine, VersionAndHelp) {
+  EXPECT_EQ(run_to_end({kLilod, "--version"}).output, "lilod " LILO_VERSION "\n");
+  const Finished help = run_to_end({kLilod, "--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* option : {"--config", "--check-config", "--print-config", "--version"}) {
+    EXPECT_NE(help.output.find(option), std::string::npos) << option;
+  }
+}
+
+TEST(CommandLine, NoConfigurationIsOneLine) {
+  const Finished run = run_to_end({kLilod});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.error, "lilod: --config FILE is required (lilod --help)\n");
+}
+
+TEST(CommandLine, UnknownOptionIsRefused) {
+  EXPECT_EQ(run_to_end({kLilod, "--no-such-option"}).exit_code, 2);
+}
+
+TEST(CommandLine, ChecksTheShippedFiles) {
+  for (const char* name : {"/vlp16.yaml", "/hdl64e.yaml"}) {
+    const std::string path = std::string(LILO_CONFIG_DIR) + name;
+    const Finished run = run_to_end({kLilod, "--check-config", "--config", path});
+    EXPECT_EQ(run.exit_code, 0) << run.error;
+    EXPECT_EQ(run.output, path + ": ok\n");
+  }
+}
+
+TEST(CommandLine, PrintsWhatIsInForce) {
+  const TemporaryFile file("print.yaml", "udp:\n  data_port: 4711\n");
+  const Finished run = run_to_end({kLilod, "--print-config", "--config", file.path()});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.output, print_config(load_config(file.path())));
+  EXPECT_NE(run.output.find("data_port: 4711"), std::string::npos);
+}
+
+// Each kind of bad file: one clear line a mistake, exit code 2, with or without --check-config.
+TEST(CommandLine, BadFilesAreOneLineEach) {
+  struct Case {
+    const char* name;
+    const char* yaml;
+    const char* says;
+  };
+  for (const Case& c :
+       {Case{"unknown", "udp:\n  port: 1\n", ":2:3: udp.port: expected a known key"},
+        Case{"type", "udp:\n  data_port: many\n", ":2:14: udp.data_port: expected a whole number"},
+        Case{"range", "udp:\n  data_port: 99999\n", ", found 99999"},
+        Case{"syntax", "udp: [\n", "expected YAML"}}) {
+    const TemporaryFile file("bad.yaml", c.yaml);
+    for (const bool check : {true, false}) {
+      std::vector<std::string> words{kLilod, "--config", file.path()};
+      if (check) words.emplace_back("--check-config");
+      const Finished run = run_to_end(words);
+      EXPECT_EQ(run.exit_code, 2) << c.name;
+      EXPECT_EQ(lines(run.error), 1) << run.error;
+      EXPECT_EQ(run.error.rfind(file.path(), 0), 0U) << run.error;
+      EXPECT_NE(run.error.find(c.says), std::string::npos) << run.error;
+    }
+  }
+  const Finished missing = run_to_end({kLilod, "--config", "/nonexistent.yaml"});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_EQ(missing.error,
+            "/nonexistent.yaml: expected a readable YAML file, found: No such file or directory\n");
+}
+
+// An address that is not this computer's: one line, and no READY.
+TEST(CommandLine, AddressThatCannotBeBoundIsOneLine) {
+  const TemporaryFile file("bind.yaml", "udp:\n  bind_address: 203.0.113.1\n");
+  const Finished run = run_to_end({kLilod, "--config", file.path()});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(lines(run.error), 1) << run.error;
+  EXPECT_NE(run.error.find("203.0.113.1"), std::string::npos) << run.error;
+}
+
+TEST(CommandLine, StopsOnSigtermAndSaysSo) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  EXPECT_EQ(lilod.stop(), 0) << lilod.process().standard_error();
+  EXPECT_TRUE(lilod.systemd().wait_for("STOPPING=1", std::chrono::seconds(1)));
+}
+
+// What the system refuses is a loud warning, never the end.
+TEST(CommandLine, RefusedRealTimeIsAWarning) {
+  Lilod lilod("realtime:\n  worker_cpu: 1000\n", {{"JOURNAL_STREAM", "1:1"}});
+  ASSERT_TRUE(lilod.wait_ready());
+  EXPECT_EQ(lilod.stop(), 0);
+  EXPECT_NE(lilod.process().standard_error().find(
+                "<4>NOT real time as configured: lilo-worker: cannot pin to cpu 1000"),
+            std::string::npos)
+      << lilod.process().standard_error();
+}
+
+}  // namespace
+}  // namespace lilo

@@ -1,0 +1,110 @@
+#include "daemon/receiver.hpp"
+
+#include "daemon/clock.hpp"
+#include "tests/daemon/vlp16_packets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace lilo {
+namespace {
+
+const SensorConfig kVlp16{.model = SensorModel::vlp16};
+
+/// Packets for `turns` whole revolutions and a little.
+std::unique_ptr<PacketSource> turns(int turns) {
+  const double packets = RoundRoomSource::kPacketsPerTurn * (turns + 0.5);
+  return std::make_unique<RoundRoomSource>(static_cast<std::uint64_t>(packets));
+}
+
+TEST(Receiver, HandsOnEveryScanInOrder) {
+  ScanRing scans(32);
+  Wakeup ready(Wakeup::Mode::blocking);
+  PipelineCounters counters;
+  const std::int64_t before = monotonic_ns();
+  Receiver receiver(turns(12), kVlp16, scans, ready, counters);
+  receiver.run();
+  ready.wait();
+  // The first revolution starts at azimuth 0, which is the cut: it may or may not be counted whole.
+  ASSERT_GE(scans.size(), 11U);
+  EXPECT_EQ(counters.scans_received, scans.size());
+  EXPECT_EQ(counters.scans_overrun, 0U);
+  EXPECT_FALSE(counters.behind);
+  std::uint64_t index = scans.front()->scan.index;
+  std::int64_t end_ns = 0;
+  while (const ScanSlot* slot = scans.front()) {
+    EXPECT_EQ(slot->scan.index, index++);
+    EXPECT_TRUE(slot->scan.complete);
+    EXPECT_NEAR(static_cast<double>(slot->scan.returns.size()), 0.1e9 / 55296.0 * 16, 64);
+    EXPECT_GT(slot->scan.start_ns, end_ns);
+    EXPECT_NEAR(static_cast<double>(slot->scan.end_ns - slot->scan.start_ns), 0.1e9, 0.2e6);
+    EXPECT_GE(slot->last_packet_ns, before);
+    EXPECT_LE(slot->last_packet_ns, monotonic_ns());
+    end_ns = slot->scan.end_ns;
+    scans.release();
+  }
+  EXPECT_EQ(receiver.driver_counts().driver().packets_lost, 0U);
+}
+
+// Nobody takes scans: the ring holds the oldest, the rest is counted, the worker is asked to skip.
+TEST(Receiver, FullRingIsCountedAndToldToTheWorker) {
+  ScanRing scans(3);
+  Wakeup ready(Wakeup::Mode::blocking);
+  PipelineCounters counters;
+  Receiver receiver(turns(12), kVlp16, scans, ready, counters);
+  receiver.run();
+  EXPECT_EQ(scans.size(), 3U);
+  EXPECT_TRUE(counters.behind);
+  EXPECT_EQ(counters.scans_received, scans.size() + counters.scans_overrun);
+}
+
+/// A source that lets the test act as the worker in the middle of the stream.
+class InterruptedSource : public PacketSource {
+ public:
+  InterruptedSource(std::unique_ptr<PacketSource> source, std::uint64_t at,
+                    std::function<void()> act)
+      : source_(std::move(source)), at_(at), act_(std::move(act)) {}
+  ReadResult read(PacketView& packet, std::chrono::milliseconds timeout) override {
+    if (read_++ == at_) act_();
+    return source_->read(packet, timeout);
+  }
+  [[nodiscard]] SourceCounts counts() const override { return source_->counts(); }
+
+ private:
+  std::unique_ptr<PacketSource> source_;
+  std::uint64_t at_, read_ = 0;
+  std::function<void()> act_;
+};
+
+// The worker wakes up after 6.5 turns and empties the ring: the scan being written into the spare
+// slot then gets in, whole, and the stream goes on without a gap.
+TEST(Receiver, GoesOnWithTheNewestScan) {
+  ScanRing scans(3);
+  Wakeup ready(Wakeup::Mode::blocking);
+  PipelineCounters counters;
+  std::vector<std::uint64_t> taken;
+  const auto take_all = [&] {
+    while (const ScanSlot* slot = scans.front()) {
+      taken.push_back(slot->scan.index);
+      EXPECT_TRUE(slot->scan.complete);
+      scans.release();
+    }
+  };
+  const auto at = static_cast<std::uint64_t>(6.5 * RoundRoomSource::kPacketsPerTurn);
+  Receiver receiver(std::make_unique<InterruptedSource>(turns(9), at, take_all), kVlp16, scans,
+                    ready, counters);
+  receiver.run();
+  take_all();
+  const std::uint64_t first = taken.at(0);
+  ASSERT_GE(taken.size(), 6U);
+  EXPECT_EQ(taken[2], first + 2) << "the ring was full from here";
+  for (std::size_t k = 4; k < taken.size(); ++k) EXPECT_EQ(taken[k], taken[k - 1] + 1);
+  EXPECT_EQ(taken[3] - taken[2] - 1, counters.scans_overrun) << "the gap is what was counted";
+  EXPECT_GT(counters.scans_overrun, 0U);
+}
+
+}  // namespace
+}  // namespace lilo

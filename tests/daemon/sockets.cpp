@@ -1,0 +1,98 @@
+#include "tests/daemon/sockets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <arpa/inet.h>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace lilo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+sockaddr_in loopback(std::uint16_t port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(port);
+  return address;
+}
+
+void require(bool holds, const char* what) {
+  if (!holds) throw std::system_error(errno, std::generic_category(), what);
+}
+
+std::optional<std::string> receive_from(int fd, std::chrono::milliseconds at_most) {
+  pollfd poll_fd{.fd = fd, .events = POLLIN};
+  if (poll(&poll_fd, 1, static_cast<int>(at_most.count())) <= 0) return std::nullopt;
+  std::array<char, 65536> bytes{};
+  const ssize_t size = recv(fd, bytes.data(), bytes.size(), 0);
+  if (size < 0) return std::nullopt;
+  return std::string(bytes.data(), static_cast<std::size_t>(size));
+}
+
+}  // namespace
+
+UdpSocket::UdpSocket() : fd_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+  require(fd_ >= 0, "socket");
+  const int buffer_bytes = 4 << 20;
+  setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &buffer_bytes, sizeof(buffer_bytes));
+  sockaddr_in address = loopback(0);
+  socklen_t size = sizeof(address);
+  require(bind(fd_, reinterpret_cast<sockaddr*>(&address), size) == 0, "bind");
+  require(getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size) == 0, "getsockname");
+  port_ = ntohs(address.sin_port);
+}
+
+UdpSocket::~UdpSocket() { close(fd_); }
+
+std::optional<std::string> UdpSocket::receive(std::chrono::milliseconds at_most) {
+  return receive_from(fd_, at_most);
+}
+
+void UdpSocket::send_to(std::uint16_t port, const std::string& datagram) const {
+  const sockaddr_in to = loopback(port);
+  const ssize_t sent = sendto(fd_, datagram.data(), datagram.size(), 0,
+                              reinterpret_cast<const sockaddr*>(&to), sizeof(to));
+  require(sent == static_cast<ssize_t>(datagram.size()), "sendto");
+}
+
+std::uint16_t free_udp_port() { return UdpSocket().port(); }
+
+NotifySocket::NotifySocket() : fd_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+  static std::atomic<int> next{0};
+  path_ = "/tmp/lilo_notify_" + std::to_string(getpid()) + '_' + std::to_string(next++);
+  unlink(path_.c_str());
+  require(fd_ >= 0, "socket");
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, path_.c_str(), sizeof(address.sun_path) - 1);
+  require(bind(fd_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0, "bind");
+}
+
+NotifySocket::~NotifySocket() {
+  close(fd_);
+  unlink(path_.c_str());
+}
+
+bool NotifySocket::wait_for(const std::string& text, std::chrono::milliseconds at_most) {
+  const auto deadline = Clock::now() + at_most;
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+    if (left.count() <= 0) return false;
+    const auto message = receive_from(fd_, left);
+    if (!message) return false;
+    log_ += *message + '\n';
+    if (('\n' + *message).find('\n' + text) != std::string::npos) return true;
+  }
+}
+
+}  // namespace lilo

@@ -1,0 +1,70 @@
+#include "tests/daemon/child_process.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <unistd.h>
+
+namespace lilo {
+namespace {
+
+const std::string kAnalyze = "/usr/bin/systemd-analyze";
+
+/// The unit as it is installed, but for the path of the program, in a folder of its own.
+class SystemdUnit : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(kAnalyze)) GTEST_SKIP() << kAnalyze << " is not here";
+    folder_ = testing::TempDir() + "lilo_unit_" + std::to_string(getpid());
+    std::filesystem::create_directories(folder_);
+    std::ostringstream unit;
+    unit << std::ifstream(std::string(LILO_UNIT_DIR) + '/' + GetParam()).rdbuf();
+    text_ = std::regex_replace(unit.str(), std::regex("ExecStart=\\S+/lilod"),
+                               "ExecStart=" LILO_BIN_DIR "/lilod");
+    std::ofstream(path()) << text_;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path() const { return folder_ + '/' + GetParam(); }
+  std::string folder_, text_;
+};
+
+TEST_P(SystemdUnit, VerifiesClean) {
+  const Finished run = run_to_end({kAnalyze, "verify", path()});
+  EXPECT_EQ(run.exit_code, 0);
+  // Of other units on this machine it may complain; of ours it must not.
+  EXPECT_EQ(run.error.find("lilod"), std::string::npos) << run.error;
+}
+
+// Exposure 2.0 or lower; the threshold is in tenths.
+TEST_P(SystemdUnit, IsHardened) {
+  const Finished run =
+      run_to_end({kAnalyze, "security", "--offline=true", "--threshold=20", path()});
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  const std::size_t verdict = run.output.find("Overall exposure level");
+  ASSERT_NE(verdict, std::string::npos) << run.output << run.error;
+  std::cout << run.output.substr(verdict);
+}
+
+// Hardening copied from elsewhere would take real time away without a word.
+TEST_P(SystemdUnit, LeavesRealTimeIn) {
+  for (const char* needed :
+       {"LimitRTPRIO=80", "LimitMEMLOCK=infinity", "Type=notify", "WatchdogSec=", "ExecReload="}) {
+    EXPECT_NE(text_.find(needed), std::string::npos) << needed;
+  }
+  EXPECT_FALSE(std::regex_search(text_, std::regex("\nRestrictRealtime=")));
+  EXPECT_FALSE(std::regex_search(text_, std::regex("\nSystemCallFilter=~.*@resources")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, SystemdUnit, testing::Values("lilod.service", "lilod@.service"),
+                         [](const auto& test) {
+                           return std::string(test.param).starts_with("lilod@") ? "instance"
+                                                                                : "single";
+                         });
+
+}  // namespace
+}  // namespace lilo

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "drivers/packet_source.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace lilo {
+
+/// A VLP-16 at 600 rpm in the middle of a round room of 10 m, as its manual says it sends (63-9243,
+/// section 9): 12 blocks of two firing sequences, 55.296 us each, azimuth in hundredths of a
+/// degree. Ends after `packets`.
+class RoundRoomSource : public PacketSource {
+ public:
+  explicit RoundRoomSource(std::uint64_t packets) : packets_(packets) {}
+
+  ReadResult read(PacketView& packet, std::chrono::milliseconds) override {
+    if (sent_ == packets_) return ReadResult::end;
+    write(sent_++);
+    packet = {.received_ns = kStartNs + static_cast<std::int64_t>(stamp_ns(sent_)),
+              .source_ipv4 = 0x7f000001,
+              .source_port = 2368,
+              .destination_port = 2368,
+              .payload = bytes_};
+    return ReadResult::packet;
+  }
+  [[nodiscard]] SourceCounts counts() const override { return {.packets = sent_}; }
+
+  static constexpr double kPacketsPerTurn = 0.1e9 / (24 * 55296.0);
+
+ private:
+  static constexpr std::int64_t kStartNs = 1'700'000'000'000'000'000;
+
+  static double stamp_ns(std::uint64_t packet) {
+    return static_cast<double>(packet) * 24 * 55296.0;
+  }
+
+  void put16(std::size_t at, unsigned value) {
+    bytes_[at] = static_cast<std::byte>(value & 0xffU);
+    bytes_[at + 1] = static_cast<std::byte>(value >> 8U & 0xffU);
+  }
+
+  void write(std::uint64_t packet) {
+    for (std::size_t block = 0; block < 12; ++block) {
+      const double t_ns = stamp_ns(packet) + static_cast<double>(block) * 2 * 55296.0;
+      const double azimuth = std::fmod(t_ns / 0.1e9, 1.0) * 36000.0;
+      put16(block * 100, 0xeeff);
+      put16(block * 100 + 2, static_cast<unsigned>(azimuth));
+      for (std::size_t channel = 0; channel < 32; ++channel) {
+        put16(block * 100 + 4 + channel * 3, 10'000 / 2);  // 10 m in steps of 2 mm
+        bytes_[block * 100 + 6 + channel * 3] = std::byte{50};
+      }
+    }
+    // Of the hour that kStartNs lies in: 1.7e9 s is 800 s past one.
+    const auto stamp_us = static_cast<std::uint32_t>(800e6 + stamp_ns(packet) * 1e-3);
+    put16(1200, stamp_us & 0xffffU);
+    put16(1202, stamp_us >> 16U);
+    bytes_[1204] = std::byte{0x37};
+    bytes_[1205] = std::byte{0x22};
+  }
+
+  std::uint64_t packets_;
+  std::uint64_t sent_ = 0;
+  std::array<std::byte, 1206> bytes_{};
+};
+
+}  // namespace lilo
