@@ -7,8 +7,6 @@
 #include <stdexcept>
 
 namespace lilo {
-namespace {
-
 std::optional<Pose> pose_at(const std::vector<StampedPose>& poses, std::int64_t stamp_ns) {
   if (poses.size() < 2 || stamp_ns < poses.front().stamp_ns - kMaxExtrapolation_ns ||
       stamp_ns > poses.back().stamp_ns + kMaxExtrapolation_ns) {
@@ -24,6 +22,8 @@ std::optional<Pose> pose_at(const std::vector<StampedPose>& poses, std::int64_t 
   return Pose{a.pose.rotation.slerp(s, b.pose.rotation),
               a.pose.translation_m + s * (b.pose.translation_m - a.pose.translation_m)};
 }
+
+namespace {
 
 Matched by_time(const Trajectory& estimate, const Trajectory& truth) {
   Matched matched;

@@ -2,6 +2,7 @@
 
 #include "tools/trajectory.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace lilo {
@@ -16,6 +17,9 @@ struct Matched {
 /// Truth this far beyond its first or last pose is still taken, along the motion of its end: file
 /// formats round times, and a turn's last firing is not the same instant for everyone.
 inline constexpr std::int64_t kMaxExtrapolation_ns = 5'000'000;
+
+/// The pose at a time, interpolated; none where the trajectory does not reach.
+std::optional<Pose> pose_at(const std::vector<StampedPose>& poses, std::int64_t stamp_ns);
 
 /// By time where both know times: the truth is interpolated (rotation at constant angular velocity,
 /// which is slerp; position linearly). By row else; then both must have as many poses.

@@ -1,0 +1,89 @@
+#include "tools/run/run_report.hpp"
+
+#include "tools/progress_bar.hpp"
+#include "tools/run/statistics.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <numeric>
+
+namespace lilo {
+namespace {
+
+TEST(Statistics, PercentilesAreNearestRank) {
+  std::vector<double> values(200);
+  std::iota(values.rbegin(), values.rend(), 1.0);  // 200 ... 1
+  const Statistics s = statistics(values);
+  EXPECT_EQ(s.mean, 100.5);
+  EXPECT_EQ(s.p50, 100.0);
+  EXPECT_EQ(s.p99, 198.0);
+  EXPECT_EQ(s.max, 200.0);
+  EXPECT_EQ(statistics({7.0}).p50, 7.0);
+  EXPECT_EQ(statistics({}).max, 0.0);
+}
+
+TEST(ProgressBar, FillsFromLeftToRight) {
+  EXPECT_EQ(progress_text(0.5, 4), "[##..]  50 %");
+  EXPECT_EQ(progress_text(1.2, 4), "[####] 100 %");
+  EXPECT_EQ(progress_text(-0.1, 4), "[....]   0 %");
+}
+
+/// Scans of which the third breaks off.
+class BrokenSource : public ScanSource {
+ public:
+  bool next(Scan& scan) override {
+    if (made_ == 2) throw DriverError("made.pcap: ends inside a record");
+    scan.clear();
+    scan.index = made_++;
+    scan.start_ns = static_cast<std::int64_t>(made_) * 100'000'000;
+    scan.end_ns = scan.start_ns + 99'000'000;
+    scan.complete = true;
+    return true;
+  }
+  [[nodiscard]] DriverCounts driver_counts() const override { return {.data_packets = 150}; }
+  [[nodiscard]] SourceCounts source_counts() const override { return {}; }
+  [[nodiscard]] double progress() const override { return 0.0; }
+
+ private:
+  std::uint64_t made_ = 0;
+};
+
+TEST(OdometryRun, KeepsWhatWasDoneBeforeTheSourceFailed) {
+  BrokenSource source;
+  int seen = 0;
+  const OdometryRun run = run_odometry(source, {}, [&](const Scan&, const Estimate&) { ++seen; });
+  EXPECT_EQ(seen, 2);
+  EXPECT_EQ(run.poses.size(), 2U);
+  EXPECT_EQ(run.poses[1].stamp_ns, 299'000'000);
+  EXPECT_EQ(run.failure, "made.pcap: ends inside a record");
+  EXPECT_NEAR(run.recorded_s, 0.199, 1e-12);
+}
+
+TEST(RunReport, JsonHasTheDocumentedKeys) {
+  BrokenSource source;
+  const OdometryRun run = run_odometry(source, {}, [](const Scan&, const Estimate&) {});
+  const auto json = nlohmann::json::parse(to_json(run));
+  EXPECT_EQ(json["scans"], 2);
+  EXPECT_EQ(json["packets"], 150);
+  EXPECT_EQ(json["packets_lost"], 0);
+  EXPECT_EQ(json["cpu_ms_per_scan"], json["total_ms"]["mean"]);
+  for (const char* figure : {"mean", "p50", "p99", "max"}) {
+    EXPECT_TRUE(json["total_ms"][figure].is_number());
+    EXPECT_TRUE(json["stages_ms"]["decode"][figure].is_number());
+  }
+  EXPECT_GT(json["peak_rss_mb"].get<double>(), 1.0);
+}
+
+TEST(RunReport, StagesAddUpToTheTotal) {
+  BrokenSource source;
+  const OdometryRun run = run_odometry(source, {}, [](const Scan&, const Estimate&) {});
+  for (std::size_t k = 0; k < run.poses.size(); ++k) {
+    double sum = run.timer.decode_ms()[k];
+    for (int s = 0; s < kStageCount; ++s) sum += run.timer.stage_ms(static_cast<Stage>(s))[k];
+    EXPECT_LE(sum, run.timer.total_ms()[k] + 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace lilo

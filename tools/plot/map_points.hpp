@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/pose.hpp"
+#include "core/scan.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace lilo {
+
+struct MapPoint {
+  float x_m, y_m, z_m;  ///< odom frame
+};
+
+/// Returns of some of the scans, put where the trajectory says they are: what a picture of the map
+/// is drawn from. Memory is bounded: when there are too many points, every second one goes, and
+/// from then on only every second one comes.
+class MapPoints {
+ public:
+  /// `pose` is the sensor's at scan.end_ns. Scans nearer than half a metre to the last one taken
+  /// are left out. Returns are moved to their own firing time between the last pose and this one,
+  /// unless the scan says that this has been done.
+  void add(const Scan& scan, const Pose& pose);
+
+  [[nodiscard]] const std::vector<MapPoint>& points() const { return points_; }
+
+ private:
+  [[nodiscard]] bool worth_taking(const Pose& pose) const;
+  void thin_out();
+
+  std::vector<MapPoint> points_;
+  std::size_t stride_ = 1;
+  bool any_ = false;
+  Pose previous_, taken_;
+  std::int64_t previous_ns_ = 0;
+};
+
+}  // namespace lilo

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "tools/plot/canvas.hpp"
+#include "tools/plot/map_points.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lilo {
+
+/// A trajectory on the map. All are told in one frame.
+struct Track {
+  std::string name;
+  std::vector<Eigen::Vector3d> positions_m;
+};
+
+/// A picture of what was driven, seen from above.
+struct TopView {
+  std::string title, subtitle;
+  std::vector<Track> tracks;
+  std::optional<Track> truth;  ///< drawn under the tracks
+  std::vector<MapPoint> points;
+};
+
+/// Draws it: header with title and legend, the map, a footer with scale and heights. The longer
+/// side of the way lies across. A view without any position gives an empty map.
+Canvas draw(const TopView& view);
+
+}  // namespace lilo

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "core/odometry.hpp"
+#include "drivers/scan_source.hpp"
+#include "tools/run/stage_timer.hpp"
+#include "tools/trajectory.hpp"
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace lilo {
+
+/// A recording taken through the odometry.
+struct OdometryRun {
+  std::vector<StampedPose> poses;                ///< one a scan
+  std::array<std::uint64_t, 4> status_counts{};  ///< scans, by TrackingStatus
+  DriverCounts driver_counts;
+  SourceCounts source_counts;
+  StageTimer timer;
+  double wall_s = 0.0;      ///< of reading, decoding and odometry; what `seen` does is left out
+  double recorded_s = 0.0;  ///< from the first firing to the last
+  std::string failure;  ///< why reading ended before the end of the recording; empty: it did not
+};
+
+/// Called after every scan.
+using SeenScan = std::function<void(const Scan&, const Estimate&)>;
+
+/// Takes every scan of the source through a new odometry, as fast as it goes, on this thread. A
+/// source that fails on the way ends the run; what was done until then is returned.
+OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const SeenScan& seen);
+
+}  // namespace lilo
