@@ -1,5 +1,8 @@
 #include "tools/eval/eval_command.hpp"
 #include "tools/listen/listen_command.hpp"
+#include "tools/plot/plot_command.hpp"
+#include "tools/replay/replay_command.hpp"
+#include "tools/run/run_command.hpp"
 #include "tools/sim/sim_command.hpp"
 
 #include <CLI/CLI.hpp>
@@ -16,7 +19,10 @@ int run(int argc, char** argv) {
   CLI::App app{"lilo: the lilod toolbox", "lilo"};
   app.set_version_flag("--version", "lilo " LILO_VERSION);
   app.require_subcommand(1);
+  lilo::add_run_command(app);
   lilo::add_eval_command(app);
+  lilo::add_plot_command(app);
+  lilo::add_replay_command(app);
   lilo::add_listen_command(app);
   lilo::add_sim_command(app);
   try {

@@ -29,11 +29,11 @@ TEST(ProgressBar, FillsFromLeftToRight) {
   EXPECT_EQ(progress_text(-0.1, 4), "[....]   0 %");
 }
 
-/// Scans of which the third breaks off.
+/// Two scans, then the file breaks off.
 class BrokenSource : public ScanSource {
  public:
   bool next(Scan& scan) override {
-    if (made_ == 2) throw DriverError("made.pcap: ends inside a record");
+    if (made_ == 2) return false;
     scan.clear();
     scan.index = made_++;
     scan.start_ns = static_cast<std::int64_t>(made_) * 100'000'000;
@@ -44,6 +44,7 @@ class BrokenSource : public ScanSource {
   [[nodiscard]] DriverCounts driver_counts() const override { return {.data_packets = 150}; }
   [[nodiscard]] SourceCounts source_counts() const override { return {}; }
   [[nodiscard]] double progress() const override { return 0.0; }
+  [[nodiscard]] std::string error() const override { return "made.pcap: ends inside a record"; }
 
  private:
   std::uint64_t made_ = 0;

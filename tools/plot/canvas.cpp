@@ -1,11 +1,11 @@
 #include "tools/plot/canvas.hpp"
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <png.h>
 #include <stdexcept>
 
 namespace lilo {
@@ -106,14 +106,16 @@ cv::Mat Canvas::image() const {
 }
 
 void Canvas::save(const std::string& path) const {
-  bool written = false;
-  try {
-    written = cv::imwrite(path, image());
-  } catch (const cv::Exception&) {  // a name whose ending OpenCV does not know
-    throw std::runtime_error(
-        fmt::format("{}: expected the name of a picture, for example map.png", path));
+  const cv::Mat picture = image();
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(picture.cols);
+  png.height = static_cast<png_uint_32>(picture.rows);
+  png.format = PNG_FORMAT_BGR;
+  const auto row_bytes = static_cast<png_int_32>(picture.step[0]);
+  if (png_image_write_to_file(&png, path.c_str(), 0, picture.data, row_bytes, nullptr) == 0) {
+    throw std::runtime_error(fmt::format("{}: cannot write: {}", path, png.message));
   }
-  if (!written) throw std::runtime_error(fmt::format("{}: cannot write", path));
 }
 
 }  // namespace lilo

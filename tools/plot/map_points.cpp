@@ -34,9 +34,8 @@ void MapPoints::add(const Scan& scan, const Pose& pose) {
     for (std::size_t k = 0; k < scan.returns.size(); k += stride_) {
       const Return& r = scan.returns[k];
       const auto slot = static_cast<std::size_t>(r.t_ns / slot_ns);
-      const Eigen::Vector3d p = poses[slot] * Eigen::Vector3d(r.x_m, r.y_m, r.z_m);
-      points_.push_back(
-          {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+      const Eigen::Vector3d p = poses[slot] * Eigen::Vector3f(r.x_m, r.y_m, r.z_m).cast<double>();
+      points_.emplace_back(p.cast<float>());
     }
     taken_ = pose;
     if (points_.size() > kMostPoints) thin_out();

@@ -8,10 +8,6 @@
 
 namespace lilo {
 
-struct MapPoint {
-  float x_m, y_m, z_m;  ///< odom frame
-};
-
 /// Returns of some of the scans, put where the trajectory says they are: what a picture of the map
 /// is drawn from. Memory is bounded: when there are too many points, every second one goes, and
 /// from then on only every second one comes.
@@ -22,13 +18,14 @@ class MapPoints {
   /// unless the scan says that this has been done.
   void add(const Scan& scan, const Pose& pose);
 
-  [[nodiscard]] const std::vector<MapPoint>& points() const { return points_; }
+  /// Odom frame, metres.
+  [[nodiscard]] const std::vector<Eigen::Vector3f>& points() const { return points_; }
 
  private:
   [[nodiscard]] bool worth_taking(const Pose& pose) const;
   void thin_out();
 
-  std::vector<MapPoint> points_;
+  std::vector<Eigen::Vector3f> points_;
   std::size_t stride_ = 1;
   bool any_ = false;
   Pose previous_, taken_;

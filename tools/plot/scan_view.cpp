@@ -28,7 +28,11 @@ const std::vector<Color>& spectrum() {
   return colors;
 }
 
-double range_of(const Return& r) { return std::hypot(r.x_m, r.y_m, r.z_m); }
+Eigen::Vector3d position_of(const Return& r) {
+  return Eigen::Vector3f(r.x_m, r.y_m, r.z_m).cast<double>();
+}
+
+double range_of(const Return& r) { return position_of(r).norm(); }
 
 /// The range that `part` of all returns do not exceed, 10 m of an empty scan.
 double range_quantile_m(const Scan& scan, double part) {
@@ -51,7 +55,8 @@ cv::Mat range_image(const Scan& scan, int row_height, double near_m, double far_
   const int rows = std::max(1, scan.beams.ring_count);
   cv::Mat3b image(rows * row_height, kImageWidth, bgr(kEmpty));
   for (const Return& r : scan.returns) {
-    const double across = (kPi - double{r.azimuth_rad}) / (2.0 * kPi);  // counter-clockwise is to the left
+    const double across = (kPi - static_cast<double>(r.azimuth_rad)) /
+                          (2.0 * kPi);  // counter-clockwise is to the left
     const int x = std::clamp(static_cast<int>(across * kImageWidth), 0, kImageWidth - 1);
     const int y = (rows - 1 - std::min<int>(r.ring, rows - 1)) * row_height;
     const double s = std::log(range_of(r) / near_m) / std::log(far_m / near_m);
@@ -90,7 +95,8 @@ template <typename ColorOf>
 void draw_from_above(Canvas& canvas, const Scan& scan, const Panel& panel, ColorOf&& color_of) {
   draw_rings(canvas, panel);
   for (const Return& r : scan.returns) {
-    const Eigen::Vector2d at = panel(r.x_m, r.y_m);
+    const Eigen::Vector3d p = position_of(r);
+    const Eigen::Vector2d at = panel(p.x(), p.y());
     const Eigen::Vector2d off = (at - panel.centre).cwiseAbs();
     if (off.maxCoeff() < kPanel / 2.0 - 2.0) canvas.disc(at, 1.2, color_of(r));
   }

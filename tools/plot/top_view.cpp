@@ -72,13 +72,14 @@ Projection fit(const TopView& view) {
   return to_pixels;
 }
 
-std::vector<Dot> dots_of(const std::vector<MapPoint>& points, const Projection& to_pixels) {
+std::vector<Dot> dots_of(const std::vector<Eigen::Vector3f>& points, const Projection& to_pixels) {
   std::vector<Dot> dots;
   dots.reserve(points.size());
-  for (const MapPoint& point : points) {
-    const Eigen::Vector2d at = to_pixels(point.x_m, point.y_m);
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3d p = point.cast<double>();
+    const Eigen::Vector2d at = to_pixels(p.x(), p.y());
     const bool inside = at.x() >= 0 && at.y() >= 0 && at.x() < kWidth && at.y() < to_pixels.height;
-    if (inside) dots.push_back({at.x(), at.y(), point.z_m});
+    if (inside) dots.push_back({at.x(), at.y(), p.z()});
   }
   return dots;
 }
@@ -162,7 +163,7 @@ void draw_heights(Canvas& canvas, const std::vector<Dot>& dots, double y) {
 
 Canvas draw(const TopView& view) {
   const Projection to_pixels = fit(view);
-  const std::vector<Dot> dots = dots_of(view.points, to_pixels);
+  const std::vector<Dot> dots = dots_of(view.points_m, to_pixels);
   Canvas canvas(kWidth, kHeader + to_pixels.height + kFooter, kBand);
   canvas.paste(density_image(kWidth, to_pixels.height, dots, kBackground), 0, kHeader);
   if (view.truth) draw_track(canvas, *view.truth, to_pixels, kTruth, 5.0);

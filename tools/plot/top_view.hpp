@@ -1,7 +1,6 @@
 #pragma once
 
 #include "tools/plot/canvas.hpp"
-#include "tools/plot/map_points.hpp"
 
 #include <optional>
 #include <string>
@@ -20,7 +19,7 @@ struct TopView {
   std::string title, subtitle;
   std::vector<Track> tracks;
   std::optional<Track> truth;  ///< drawn under the tracks
-  std::vector<MapPoint> points;
+  std::vector<Eigen::Vector3f> points_m;
 };
 
 /// Draws it: header with title and legend, the map, a footer with scale and heights. The longer

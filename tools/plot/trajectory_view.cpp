@@ -48,7 +48,7 @@ TopView trajectory_view(const std::string& title, const std::vector<Trajectory>&
   for (const Trajectory& estimate : estimates) {
     view.tracks.push_back(track_of(estimate, estimate.name));
   }
-  view.points = map.points();
+  view.points_m = map.points();
   if (estimates.empty() || estimates.front().poses.empty()) return view;
   view.subtitle = length_text(estimates.front());
   if (truth) {

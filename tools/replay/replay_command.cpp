@@ -9,6 +9,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <stdexcept>
 #include <unistd.h>
 
 namespace lilo {
@@ -62,6 +63,7 @@ void run_replay(const Command& command) {
   }
   ticker.clear();
   fmt::print("{}\n", summary(player.counts()));
+  if (!source->error().empty()) throw std::runtime_error(source->error());
 }
 
 }  // namespace

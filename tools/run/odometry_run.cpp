@@ -2,21 +2,27 @@
 
 #include "tools/clock.hpp"
 
+#include <fstream>
+#include <sstream>
+#include <string>
+
 namespace lilo {
 namespace {
 
-/// False at the end, for whatever reason.
-bool read_scan(ScanSource& source, Scan& scan, std::string& failure) {
-  try {
-    return source.next(scan);
-  } catch (const DriverError& error) {
-    failure = error.what();
-    return false;
+/// VmHWM of /proc/self/status; 0 where the kernel does not say.
+double peak_rss_mb() {
+  std::ifstream status("/proc/self/status");
+  std::string line;
+  while (std::getline(status, line)) {
+    if (!line.starts_with("VmHWM:")) continue;
+    double kib = 0.0;
+    std::istringstream(line.substr(6)) >> kib;
+    return kib * 1024e-6;
   }
+  return 0.0;
 }
 
 }  // namespace
-
 OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const SeenScan& seen) {
   OdometryRun run;
   Odometry odometry(config);
@@ -26,7 +32,7 @@ OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const
   for (;;) {
     run.timer.start();
     const std::int64_t begin_ns = monotonic_ns();
-    if (!read_scan(source, scan, run.failure)) break;
+    if (!source.next(scan)) break;
     run.timer.decoded();
     const Estimate estimate = odometry.process(scan, run.timer.hook());
     run.timer.finish();
@@ -39,6 +45,8 @@ OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const
     seen(scan, estimate);
   }
   run.wall_s = static_cast<double>(busy_ns) * 1e-9;
+  run.peak_rss_mb = peak_rss_mb();
+  run.failure = source.error();
   run.driver_counts = source.driver_counts();
   run.source_counts = source.source_counts();
   return run;

@@ -19,16 +19,16 @@ struct OdometryRun {
   DriverCounts driver_counts;
   SourceCounts source_counts;
   StageTimer timer;
-  double wall_s = 0.0;      ///< of reading, decoding and odometry; what `seen` does is left out
-  double recorded_s = 0.0;  ///< from the first firing to the last
-  std::string failure;  ///< why reading ended before the end of the recording; empty: it did not
+  double wall_s = 0.0;       ///< of reading, decoding and odometry; what `seen` does is left out
+  double recorded_s = 0.0;   ///< from the first firing to the last
+  double peak_rss_mb = 0.0;  ///< most memory of this process up to here, 10^6 bytes
+  std::string failure;  ///< why the recording ended early, ScanSource::error(); empty: it did not
 };
 
 /// Called after every scan.
 using SeenScan = std::function<void(const Scan&, const Estimate&)>;
 
-/// Takes every scan of the source through a new odometry, as fast as it goes, on this thread. A
-/// source that fails on the way ends the run; what was done until then is returned.
+/// Takes every scan of the source through a new odometry, as fast as it goes, on this thread.
 OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const SeenScan& seen);
 
 }  // namespace lilo

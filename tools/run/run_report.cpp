@@ -6,9 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
-#include <sstream>
 #include <utility>
 
 namespace lilo {
@@ -61,18 +59,6 @@ std::string status_text(const OdometryRun& run) {
 
 }  // namespace
 
-double peak_rss_mb() {
-  std::ifstream status("/proc/self/status");
-  std::string line;
-  while (std::getline(status, line)) {
-    if (!line.starts_with("VmHWM:")) continue;
-    double kib = 0.0;
-    std::istringstream(line.substr(6)) >> kib;
-    return kib * 1024e-6;
-  }
-  return 0.0;
-}
-
 std::string to_json(const OdometryRun& run) {
   Json stages;
   for (const auto& [name, values] : stage_statistics(run.timer)) stages[name] = json_of(values);
@@ -96,7 +82,7 @@ std::string to_json(const OdometryRun& run) {
   json["recorded_s"] = run.recorded_s;
   json["wall_s"] = run.wall_s;
   json["real_time_factor"] = real_time_factor(run);
-  json["peak_rss_mb"] = peak_rss_mb();
+  json["peak_rss_mb"] = run.peak_rss_mb;
   return json.dump(2) + "\n";
 }
 
@@ -114,7 +100,7 @@ std::string to_text(const OdometryRun& run) {
   text += table_line("total", statistics(run.timer.total_ms()));
   fmt::format_to(out, "real-time factor {:.1f} ({:.1f} s recorded, {:.2f} s needed)\n",
                  real_time_factor(run), run.recorded_s, run.wall_s);
-  fmt::format_to(out, "peak memory      {:.0f} MB\n", peak_rss_mb());
+  fmt::format_to(out, "peak memory      {:.0f} MB\n", run.peak_rss_mb);
   return text;
 }
 
