@@ -39,6 +39,7 @@ class BrokenSource : public ScanSource {
     scan.start_ns = static_cast<std::int64_t>(made_) * 100'000'000;
     scan.end_ns = scan.start_ns + 99'000'000;
     scan.complete = true;
+    scan.beams.ring_count = 16;
     return true;
   }
   [[nodiscard]] DriverCounts driver_counts() const override { return {.data_packets = 150}; }
