@@ -1,5 +1,6 @@
 #include "drivers/pcap_scans.hpp"
 
+#include "drivers/hdl64e_calibration.hpp"
 #include "drivers/packet_source.hpp"
 
 #include <utility>
@@ -7,11 +8,44 @@
 namespace lilo {
 namespace {
 
+// Reading ahead for the table stops here: three laps of the status bytes, and then some.
+constexpr std::uint64_t kMaxPacketsAhead = 16'000;
+
+// Takes scans and keeps none.
+class NoScans final : public ScanSink {
+ public:
+  Scan& exchange(Scan& finished) override {
+    finished.clear();
+    return finished;
+  }
+};
+
+// The table an HDL-64E's capture carries, so that the first revolution can be used. A capture read
+// from standard input cannot be read twice: there the revolutions before the table are lost.
+void read_table_ahead(const std::string& path, const SensorConfig& config, ScanBuilder& builder) {
+  if (path == "-" || builder.calibration() != nullptr) return;
+  Scan scan;
+  NoScans sink;
+  ScanBuilder ahead(config, scan, sink);
+  const auto packets = open_pcap(path);
+  PacketView packet;
+  while (packets->read(packet, std::chrono::milliseconds(0)) == ReadResult::packet) {
+    ahead.feed(packet);
+    const bool useless = ahead.status().model == SensorModel::vlp16;
+    if (useless || ahead.counts().data_packets > kMaxPacketsAhead) return;
+    if (ahead.calibration() == nullptr) continue;
+    builder.use_calibration(*ahead.calibration());
+    return;
+  }
+}
+
 // Two scans take turns: one is written while the other waits to be fetched.
 class PcapScans final : public ScanSource, private ScanSink {
  public:
   PcapScans(const std::string& path, const SensorConfig& config)
-      : packets_(open_pcap(path)), builder_(config, scans_[0], *this) {}
+      : packets_(open_pcap(path)), builder_(config, scans_[0], *this) {
+    read_table_ahead(path, config, builder_);
+  }
 
   bool next(Scan& scan) override {
     while (finished_ == nullptr) {
@@ -24,6 +58,7 @@ class PcapScans final : public ScanSource, private ScanSink {
   }
   [[nodiscard]] DriverCounts driver_counts() const override { return builder_.counts(); }
   [[nodiscard]] SourceCounts source_counts() const override { return packets_->counts(); }
+  [[nodiscard]] SensorStatus sensor_status() const override { return builder_.status(); }
   [[nodiscard]] double progress() const override { return packets_->progress(); }
   [[nodiscard]] std::string error() const override { return packets_->error(); }
 
@@ -43,7 +78,9 @@ class PcapScans final : public ScanSource, private ScanSink {
 }  // namespace
 
 std::unique_ptr<ScanSource> open_pcap_scans(const std::string& path, const SensorConfig& config) {
-  return std::make_unique<PcapScans>(path, config);
+  SensorConfig own = config;
+  own.state_directory.clear();  // what is stored is of the sensor of this computer
+  return std::make_unique<PcapScans>(path, own);
 }
 
 }  // namespace lilo

@@ -1,5 +1,6 @@
 #include "drivers/scan_builder.hpp"
 
+#include "drivers/hdl64e_unit.hpp"
 #include "drivers/packet_sequence.hpp"
 #include "drivers/position_packet.hpp"
 #include "drivers/scan_assembler.hpp"
@@ -7,25 +8,41 @@
 #include "drivers/vlp16_decoder.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lilo {
+namespace {
+
+// A sensor that was silent for so long may be replaced by another one on the same network.
+constexpr std::int64_t kReplaceableNs = 2'000'000'000;
+
+}  // namespace
 
 struct ScanBuilder::Impl {
   Impl(const SensorConfig& config, Scan& target, ScanSink& sink)
-      : model(config.model), vlp16(config), assembler(config, target, sink) {}
+      : model(config.model), vlp16(config), hdl64e(config), assembler(config, target, sink) {}
 
   void feed(const PacketView& packet);
-  void feed_data(const PacketView& packet);
-  void feed_position(const PacketView& packet);
-  void use(const PacketDecoder& decoder, std::int64_t received_ns, std::uint32_t stamp_us);
-  PacketDecoder* decoder_of(DataPacket packet);
+  bool is_followed(const PacketView& packet);
+  bool feed_data(const PacketView& packet);
+  bool feed_position(const PacketView& packet);
+  bool feed_vlp16(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
+  bool feed_hdl64e(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
+  PacketSequence::Verdict sort(const PacketDecoder& decoder, std::int64_t line_ns,
+                               std::int64_t received_ns);
+  void assemble(const PacketDecoder& decoder, std::int64_t line_ns,
+                PacketSequence::Verdict verdict);
 
   SensorModel model;
+  SensorModel seen_model = SensorModel::automatic;
   Vlp16Decoder vlp16;
+  Hdl64eUnit hdl64e;
   SensorClock clock;
   PacketSequence sequence;
   ScanAssembler assembler;
   DriverCounts counts;
+  std::uint32_t sensor_ipv4 = 0;
+  std::int64_t sensor_heard_ns = 0;
 };
 
 ScanBuilder::ScanBuilder(const SensorConfig& config, Scan& target, ScanSink& sink)
@@ -34,76 +51,158 @@ ScanBuilder::~ScanBuilder() = default;
 
 void ScanBuilder::feed(const PacketView& packet) { impl_->feed(packet); }
 const DriverCounts& ScanBuilder::counts() const { return impl_->counts; }
+const Hdl64eCalibration* ScanBuilder::calibration() const { return impl_->hdl64e.calibration(); }
+
+void ScanBuilder::use_calibration(const Hdl64eCalibration& calibration) {
+  impl_->assembler.interrupt(impl_->clock);
+  impl_->hdl64e.use_calibration(calibration, CalibrationOrigin::packets);
+}
+
+SensorStatus ScanBuilder::status() const {
+  const Impl& impl = *impl_;
+  SensorStatus status{
+      .model = impl.seen_model, .clock = impl.clock.source(), .sensor_ipv4 = impl.sensor_ipv4};
+  const PacketDecoder* decoder = nullptr;
+  if (impl.seen_model == SensorModel::vlp16) {
+    decoder = &impl.vlp16;
+    status.product_id = impl.vlp16.product_id();
+    status.return_mode = impl.vlp16.mode();
+    status.packet_period_us = impl.vlp16.packet_period_ns() * 1e-3;
+    status.calibration = CalibrationOrigin::built_in;
+  } else if (impl.seen_model == SensorModel::hdl64e) {
+    decoder = &impl.hdl64e.decoder();
+    impl.hdl64e.describe(status);
+  }
+  if (decoder != nullptr)
+    status.rpm = std::abs(decoder->ticks_per_ns()) * 60e9 / wire::kTicksPerTurn;
+  return status;
+}
 
 void ScanBuilder::Impl::feed(const PacketView& packet) {
-  if (packet.payload.size() == wire::kDataPacketBytes) {
-    feed_data(packet);
-  } else if (packet.payload.size() == wire::kPositionPacketBytes) {
-    feed_position(packet);
+  if (!is_followed(packet)) {
+    ++counts.foreign_packets;
+    return;
+  }
+  const std::size_t size = packet.payload.size();
+  const bool taken = size == wire::kDataPacketBytes       ? feed_data(packet)
+                     : size == wire::kPositionPacketBytes ? feed_position(packet)
+                                                          : false;
+  if (taken) {
+    sensor_ipv4 = packet.source_ipv4;
+    sensor_heard_ns = packet.received_ns;
   } else {
     ++counts.malformed_packets;
   }
   counts.scans_complete = assembler.scans_complete();
   counts.scans_partial = assembler.scans_partial();
+  counts.stalls = assembler.stalls();
 }
 
-void ScanBuilder::Impl::feed_position(const PacketView& packet) {
+// The first sensor heard is the one; packets of two would make scans of neither.
+bool ScanBuilder::Impl::is_followed(const PacketView& packet) {
+  if (sensor_ipv4 == 0 || packet.source_ipv4 == sensor_ipv4) return true;
+  return std::abs(packet.received_ns - sensor_heard_ns) > kReplaceableNs;
+}
+
+bool ScanBuilder::Impl::feed_position(const PacketView& packet) {
   const auto position = parse_position_packet(packet.payload);
-  if (!position) {
-    ++counts.malformed_packets;
-    return;
-  }
+  if (!position) return false;
   ++counts.position_packets;
   if (position->synchronized())
     clock.gps_fix(position->stamp_us, position->gps->utc_ns, packet.received_ns);
+  return true;
 }
 
-PacketDecoder* ScanBuilder::Impl::decoder_of(DataPacket packet) {
-  // HDL-64E packets name no model; their second block is always of the lower lasers.
-  const bool hdl64e = wire::block_flag(packet.data(), 1) == wire::kLowerFlag;
-  if (hdl64e || model == SensorModel::hdl64e) return nullptr;
-  const std::uint8_t product = wire::u8(packet.data() + wire::kTailOffset + 1);
-  const bool known =
-      product == Vlp16Decoder::kProductVlp16 || product == Vlp16Decoder::kProductHiRes;
-  return known || model == SensorModel::vlp16 ? &vlp16 : nullptr;
-}
-
-void ScanBuilder::Impl::feed_data(const PacketView& packet) {
+bool ScanBuilder::Impl::feed_data(const PacketView& packet) {
   const DataPacket data = packet.payload.first<wire::kDataPacketBytes>();
   const std::uint32_t stamp_us = wire::u32(data.data() + wire::kStampOffset);
-  PacketDecoder* decoder = decoder_of(data);
-  if (decoder == nullptr || stamp_us > wire::kMaxStampUs || !decoder->load(data)) {
-    ++counts.malformed_packets;
-    return;
-  }
+  if (stamp_us > wire::kMaxStampUs) return false;
+  // HDL-64E packets name no model; their second block is always of the lower lasers.
+  const bool is_hdl64e = wire::block_flag(data.data(), 1) == wire::kLowerFlag;
+  const SensorModel found = is_hdl64e ? SensorModel::hdl64e : SensorModel::vlp16;
+  if (model != SensorModel::automatic && model != found) return false;
+  const bool good = is_hdl64e ? feed_hdl64e(data, stamp_us, packet.received_ns)
+                              : feed_vlp16(data, stamp_us, packet.received_ns);
+  if (!good) return false;
   ++counts.data_packets;
-  use(*decoder, packet.received_ns, stamp_us);
+  seen_model = found;
+  return true;
 }
 
-void ScanBuilder::Impl::use(const PacketDecoder& decoder, std::int64_t received_ns,
-                            std::uint32_t stamp_us) {
+bool ScanBuilder::Impl::feed_vlp16(DataPacket data, std::uint32_t stamp_us,
+                                   std::int64_t received_ns) {
+  const std::uint8_t product = wire::u8(data.data() + wire::kTailOffset + 1);
+  const bool known =
+      product == Vlp16Decoder::kProductVlp16 || product == Vlp16Decoder::kProductHiRes;
+  // Old firmware names no product; then the configuration must.
+  if (!known && model != SensorModel::vlp16) return false;
+  if (!vlp16.load(data)) return false;
+  const std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
+  assemble(vlp16, line_ns, sort(vlp16, line_ns, received_ns));
+  return true;
+}
+
+bool ScanBuilder::Impl::feed_hdl64e(DataPacket data, std::uint32_t stamp_us,
+                                    std::int64_t received_ns) {
   using Arrival = PacketSequence::Arrival;
   const std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
+  if (!hdl64e.load(data, line_ns)) return false;
+  if (!hdl64e.times_known()) {
+    ++counts.waiting_packets;
+    return true;
+  }
+  const auto verdict = sort(hdl64e.decoder(), line_ns, received_ns);
+  if (verdict.arrival == Arrival::restart) {
+    assembler.interrupt(clock);
+    hdl64e.restart();
+    return true;
+  }
+  if (hdl64e.is_ready()) {
+    assemble(hdl64e.decoder(), line_ns, verdict);
+  } else {
+    ++counts.waiting_packets;
+  }
+  const bool in_order = verdict.arrival == Arrival::first || verdict.arrival == Arrival::next;
+  if (in_order && hdl64e.see_status(data, verdict.lost, stamp_us, received_ns, clock))
+    assembler.interrupt(clock);
+  return true;
+}
+
+PacketSequence::Verdict ScanBuilder::Impl::sort(const PacketDecoder& decoder, std::int64_t line_ns,
+                                                std::int64_t received_ns) {
   const auto verdict = sequence.see(line_ns, received_ns, decoder.packet_period_ns());
   switch (verdict.arrival) {
-    case Arrival::duplicate:
+    case PacketSequence::Arrival::duplicate:
       ++counts.packets_duplicated;
-      assembler.note_duplicate();
-      return;
-    case Arrival::late:
+      break;
+    case PacketSequence::Arrival::late:
       ++counts.packets_reordered;
       counts.packets_lost -= std::min<std::uint64_t>(counts.packets_lost, 1);
-      assembler.add_late(decoder, line_ns);
-      return;
-    case Arrival::restart:
+      break;
+    case PacketSequence::Arrival::restart:
       ++counts.sensor_restarts;
       break;
-    case Arrival::first:
-    case Arrival::next:
+    case PacketSequence::Arrival::first:
+    case PacketSequence::Arrival::next:
       counts.packets_lost += verdict.lost;
       break;
   }
-  assembler.add(decoder, line_ns, verdict, clock);
+  return verdict;
+}
+
+void ScanBuilder::Impl::assemble(const PacketDecoder& decoder, std::int64_t line_ns,
+                                 PacketSequence::Verdict verdict) {
+  switch (verdict.arrival) {
+    case PacketSequence::Arrival::duplicate:
+      assembler.note_duplicate();
+      break;
+    case PacketSequence::Arrival::late:
+      assembler.add_late(decoder, line_ns);
+      break;
+    default:
+      assembler.add(decoder, line_ns, verdict, clock);
+      break;
+  }
 }
 
 }  // namespace lilo

@@ -3,6 +3,7 @@
 #include "core/scan.hpp"
 #include "drivers/packet_source.hpp"
 #include "drivers/sensor_config.hpp"
+#include "drivers/sensor_status.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -31,8 +32,13 @@ struct DriverCounts {
   std::uint64_t packets_reordered = 0;
   std::uint64_t scans_complete = 0;
   std::uint64_t scans_partial = 0;
-  std::uint64_t sensor_restarts = 0;
+  std::uint64_t sensor_restarts = 0;  ///< its clock jumped
+  std::uint64_t stalls = 0;           ///< its head did not come round within half a second
+  std::uint64_t foreign_packets = 0;  ///< of another sensor than the one being followed
+  std::uint64_t waiting_packets = 0;  ///< came before the firing times or the table were known
 };
+
+struct Hdl64eCalibration;
 
 /// Packets to scans: finds the model, decodes, cuts by azimuth, keeps the sensor's clock.
 /// One thread; no allocation after the first revolution; nothing a packet holds can harm it.
@@ -46,7 +52,14 @@ class ScanBuilder {
 
   void feed(const PacketView& packet);
 
+  /// Between packets: what the sensor is and does, as far as it is known.
+  [[nodiscard]] SensorStatus status() const;
   [[nodiscard]] const DriverCounts& counts() const;
+
+  /// HDL-64E: the table in use, or null while there is none.
+  [[nodiscard]] const Hdl64eCalibration* calibration() const;
+  /// HDL-64E: use this table, which was read from the packets by someone else.
+  void use_calibration(const Hdl64eCalibration& calibration);
 
  private:
   struct Impl;

@@ -22,6 +22,8 @@ class ScanSource {
   virtual bool next(Scan& scan) = 0;
   [[nodiscard]] virtual DriverCounts driver_counts() const = 0;
   [[nodiscard]] virtual SourceCounts source_counts() const = 0;
+  /// What the capture says of the sensor; nothing for data sets.
+  [[nodiscard]] virtual SensorStatus sensor_status() const { return {}; }
   /// Part of the recording already read, in [0, 1]; 0 where that cannot be known.
   [[nodiscard]] virtual double progress() const = 0;
   /// Why the recording ended early, one line for the user; empty while nothing is wrong.

@@ -15,6 +15,8 @@ enum class ReturnChoice : std::uint8_t { strongest, last, both };
 struct SensorConfig {
   SensorModel model = SensorModel::automatic;
   std::string calibration_file;  ///< HDL-64E: db.xml or the ROS YAML form; empty: from the packets
+  /// Where a table read from the packets is kept for the next start; empty: nowhere.
+  std::string state_directory;
   double cut_azimuth_rad = 0.0;  ///< a scan starts here; clockwise from +x as the sensor counts
   double max_hole_rad = 5.0 * std::numbers::pi / 180.0;  ///< a larger hole makes a scan partial
   double min_range_m = 0.4;  ///< nearer returns are the robot itself or dust on the lens

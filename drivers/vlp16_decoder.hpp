@@ -3,12 +3,11 @@
 #include "drivers/azimuth.hpp"
 #include "drivers/packet_decoder.hpp"
 #include "drivers/sensor_config.hpp"
+#include "drivers/sensor_status.hpp"
 
 #include <array>
 
 namespace lilo {
-
-enum class ReturnMode : std::uint8_t { strongest, last, dual };
 
 /// VLP-16, Puck LITE (product 0x22) and Puck Hi-Res (0x24). Manual 63-9243 rev. D, chapter 9.
 ///

@@ -62,6 +62,7 @@ TEST_P(SimulatedSet, RevolutionsAreThoseOfTheTruth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Vlp16, SimulatedSet, testing::Values("sim_vlp16_park", "sim_vlp16_town"));
+INSTANTIATE_TEST_SUITE_P(Hdl64e, SimulatedSet, testing::Values("sim_hdl64_town"));
 
 }  // namespace
 }  // namespace lilo

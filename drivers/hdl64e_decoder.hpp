@@ -1,0 +1,92 @@
+#pragma once
+
+#include "drivers/azimuth.hpp"
+#include "drivers/hdl64e_calibration.hpp"
+#include "drivers/packet_decoder.hpp"
+#include "drivers/sensor_config.hpp"
+
+#include <array>
+
+namespace lilo {
+
+/// When the lasers of an HDL-64E fire. Upper and lower block fire together, four lasers to a group.
+/// S2 manual (48 us a shot) and S3 manual (57.6 us), "laser firing time table".
+struct FiringTable {
+  std::int32_t shot_ns;                  ///< from one shot of all lasers to the next
+  std::int32_t group_ns;                 ///< from one group of four to the next
+  std::array<std::int32_t, 4> laser_ns;  ///< within a group
+};
+
+/// The table that fits the time between packets, which differs by model and mode and is in no byte
+/// of the packet: 288 us (6 shots of 48), 345.6 us (6 of 57.6), 172.8 us (3 of 57.6, dual return),
+/// 144 us (3 of 48), each to 4 percent. Null when none fits.
+const FiringTable* find_firing_table(double packet_period_ns, bool dual);
+
+/// HDL-64E S2 and S3. Blocks alternate between lasers 0-31 (upper, flag EEFF) and 32-63 (lower,
+/// DDFF); a pair is one shot and has one azimuth. In dual return mode two pairs are one shot.
+///
+/// With azimuth a of the head, rotational correction b, elevation w, d = distance + correction:
+///   x = d_y cos w cos(a-b) + h sin(a-b),  y = -(d_x cos w sin(a-b) - h cos(a-b)),  z = d_m sin w +
+///   v
+/// (manual's axes turned to REP-103; offsets h, v are added last). d_x and d_y carry the near-range
+/// corrections, linear between 2.40 m (x) or 1.93 m (y) and 25.04 m, where they meet the far one;
+/// d_m is their mean, since the manual's choice of d_y alone bends z with the azimuth.
+class Hdl64eDecoder final : public PacketDecoder {
+ public:
+  explicit Hdl64eDecoder(const SensorConfig& config);
+
+  void use_calibration(const Hdl64eCalibration& calibration);
+  /// The table append() works with; none before use_table().
+  void use_table(const FiringTable* table) { table_ = table; }
+
+  bool load(DataPacket packet) override;
+  [[nodiscard]] std::span<const Column> columns() const override {
+    return {columns_.data(), column_count_};
+  }
+  [[nodiscard]] double ticks_per_ns() const override { return ticks_per_ns_; }
+  [[nodiscard]] double packet_period_ns() const override;
+  [[nodiscard]] const BeamTable& beams() const override { return beams_; }
+  void append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const override;
+
+  [[nodiscard]] bool is_dual() const { return dual_; }
+  /// 0 while no table is in use.
+  [[nodiscard]] std::int32_t shot_ns() const { return table_ == nullptr ? 0 : table_->shot_ns; }
+
+ private:
+  static constexpr std::size_t kBank = wire::kChannelsPerBlock;
+
+  struct Laser {  // what a return needs of its laser's correction
+    float cos_w, sin_w, cos_b, sin_b, b_rad;
+    float dist_m, near_x, near_y, horizontal_m, vertical_m;
+    float focal, slope, min_intensity, max_intensity;
+    int min_steps, max_steps;
+    std::uint8_t ring;
+  };
+  struct Bank {  // one block's 32 lasers
+    std::array<Return, kBank> returns;
+    std::array<std::uint16_t, kBank> steps;
+    std::array<bool, kBank> in_range;
+  };
+
+  [[nodiscard]] bool find_dual(const std::byte* packet) const;
+  void project(const std::byte* block, std::size_t first_laser, std::int32_t t_ns, ReturnKind kind,
+               Bank& bank) const;
+  void append_single(int pair, std::int32_t t_ns, std::vector<Return>& out) const;
+  void append_dual(int shot, std::int32_t t_ns, std::vector<Return>& out) const;
+
+  AzimuthTable azimuths_;
+  double min_range_m_, max_range_m_;
+  ReturnChoice choice_;
+  float step_m_ = wire::kMetresPerStep;
+  std::array<Laser, Hdl64eCalibration::kLasers> lasers_{};
+  BeamTable beams_;
+  const FiringTable* table_ = nullptr;
+
+  const std::byte* packet_ = nullptr;
+  bool dual_ = false;
+  double ticks_per_ns_ = 0.0;
+  std::size_t column_count_ = 0;
+  std::array<Column, wire::kBlocks / 2> columns_{};
+};
+
+}  // namespace lilo

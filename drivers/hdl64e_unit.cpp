@@ -1,0 +1,97 @@
+#include "drivers/hdl64e_unit.hpp"
+
+#include "drivers/packet_source.hpp"
+
+#include <filesystem>
+
+namespace lilo {
+namespace {
+
+constexpr std::int32_t kS3ShotNs = 57600;
+
+}  // namespace
+
+Hdl64eUnit::Hdl64eUnit(const SensorConfig& config) : decoder_(config) {
+  if (!config.state_directory.empty())
+    stored_file_ = config.state_directory + "/hdl64e_calibration.yaml";
+  if (!config.calibration_file.empty()) {
+    use_calibration(load_calibration(config.calibration_file), CalibrationOrigin::file);
+  } else if (!stored_file_.empty() && std::filesystem::is_regular_file(stored_file_)) {
+    try {
+      use_calibration(load_calibration(stored_file_), CalibrationOrigin::stored);
+    } catch (const DriverError&) {
+      origin_ = CalibrationOrigin::none;  // the packets will bring it again
+    }
+  }
+}
+
+void Hdl64eUnit::use_calibration(const Hdl64eCalibration& calibration, CalibrationOrigin origin) {
+  calibration_ = calibration;
+  origin_ = origin;
+  decoder_.use_calibration(calibration);
+}
+
+void Hdl64eUnit::restart() {
+  status_.restart();
+  period_.restart();
+  table_known_ = false;
+  decoder_.use_table(nullptr);
+}
+
+bool Hdl64eUnit::load(DataPacket packet, std::int64_t line_ns) {
+  if (!decoder_.load(packet)) return false;
+  if (decoder_.is_dual() != was_dual_) {
+    was_dual_ = decoder_.is_dual();
+    period_.restart();
+    table_known_ = false;
+    decoder_.use_table(nullptr);
+  }
+  if (table_known_) return true;
+  find_table(line_ns);
+  return decoder_.load(packet);
+}
+
+void Hdl64eUnit::find_table(std::int64_t line_ns) {
+  period_.see(line_ns);
+  const FiringTable* table = find_firing_table(period_.median_ns(), decoder_.is_dual());
+  decoder_.use_table(table);
+  table_known_ = table != nullptr;
+}
+
+bool Hdl64eUnit::see_status(DataPacket packet, std::uint32_t lost, std::uint32_t stamp_us,
+                            std::int64_t received_ns, SensorClock& clock) {
+  const std::uint8_t type = wire::u8(packet.data() + wire::kTailOffset);
+  const std::uint8_t value = wire::u8(packet.data() + wire::kTailOffset + 1);
+  const bool is_s3 = decoder_.shot_ns() == kS3ShotNs;
+  const Hdl64eStatus::Table table = status_.see(type, value, lost, is_s3);
+  if (const auto gps_utc_ns = status_.take_gps_utc_ns())
+    clock.gps_fix(stamp_us, *gps_utc_ns, received_ns);
+  if (table == Hdl64eStatus::Table::incomplete) return false;
+  if (table == Hdl64eStatus::Table::refused) {
+    ++refused_;
+    return false;
+  }
+  // A file was the user's choice; a table of this run stays; a stored one gives way to the
+  // sensor's.
+  if (origin_ == CalibrationOrigin::file) return false;
+  if (calibration_ && *calibration_ == status_.calibration()) {
+    origin_ = CalibrationOrigin::packets;
+    return false;
+  }
+  use_calibration(status_.calibration(), CalibrationOrigin::packets);
+  if (!stored_file_.empty()) stored_ = store_calibration(stored_file_, *calibration_);
+  return true;
+}
+
+void Hdl64eUnit::describe(SensorStatus& status) const {
+  status.return_mode = decoder_.is_dual() ? ReturnMode::dual : ReturnMode::strongest;
+  status.packet_period_us = decoder_.packet_period_ns() * 1e-3;
+  status.calibration = origin_;
+  status.calibration_progress = status_.progress();
+  status.calibrations_refused = refused_;
+  status.calibration_stored = stored_;
+  status.firmware = status_.firmware();
+  status.temperature_c = status_.temperature_c();
+}
+
+}  // namespace lilo

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/scan.hpp"
+#include "drivers/sensor_config.hpp"
+
+#include <cstdint>
+
+namespace lilo {
+
+enum class ReturnMode : std::uint8_t { strongest, last, dual };
+
+/// Where the geometry of the lasers comes from.
+enum class CalibrationOrigin : std::uint8_t {
+  none,      ///< HDL-64E without a table: its packets cannot be used yet
+  built_in,  ///< VLP-16: the same for every unit
+  file,      ///< SensorConfig::calibration_file
+  stored,    ///< kept from an earlier run in SensorConfig::state_directory
+  packets,   ///< read from the status bytes of this run
+};
+
+/// What is known of the sensor. Zero where nothing is.
+struct SensorStatus {
+  SensorModel model = SensorModel::automatic;  ///< automatic: no packet of a known model yet
+  std::uint8_t product_id = 0;                 ///< VLP-16: 0x22, Puck Hi-Res: 0x24; else 0
+  ReturnMode return_mode = ReturnMode::strongest;
+  double rpm = 0.0;
+  double packet_period_us = 0.0;  ///< HDL-64E: 0 until it is measured
+  ClockSource clock = ClockSource::host;
+  CalibrationOrigin calibration = CalibrationOrigin::none;
+  double calibration_progress = 0.0;       ///< part of the table read from packets, in [0, 1]
+  std::uint64_t calibrations_refused = 0;  ///< tables whose checksum or values were wrong
+  bool calibration_stored = false;         ///< the table read was written to the state directory
+  std::uint8_t firmware = 0;               ///< HDL-64E: 0x47 is 4.07
+  std::uint8_t temperature_c = 0;          ///< HDL-64E
+  std::uint32_t sensor_ipv4 = 0;           ///< host byte order
+};
+
+}  // namespace lilo
