@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <string>
 
-/// sd_notify(3) in words. Each does nothing when systemd did not start us.
+/// sd_notify(3) in words. libsystemd's own call waits while systemd does not read, and with it
+/// would wait the thread that publishes poses; these never wait, but for ready(). Each does nothing
+/// when systemd did not start us.
 namespace lilo::notify {
 
 void ready(const std::string& status);
