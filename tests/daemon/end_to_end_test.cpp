@@ -1,0 +1,108 @@
+#include "core/odometry.hpp"
+#include "drivers/scan_source.hpp"
+#include "tests/daemon/lilod_fixture.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+namespace lilo {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::int64_t kHourNs = 3'600'000'000'000;
+
+/// The first bytes of a capture: a pcap may end anywhere. All of it when LILO_LONG_TESTS is set.
+std::string beginning_of(const std::string& path, std::size_t bytes) {
+  if (std::getenv("LILO_LONG_TESTS") != nullptr) bytes = std::filesystem::file_size(path);
+  std::string text(bytes, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return text;
+}
+
+/// The same file read as a file, scan by scan.
+std::vector<Estimate> poses_of_file(const std::string& pcap, DriverCounts& counts) {
+  const auto source = open_scans(pcap, {});
+  Odometry odometry{OdometryConfig{}};
+  std::vector<Estimate> poses;
+  Scan scan;
+  while (source->next(scan)) poses.push_back(odometry.process(scan));
+  counts = source->driver_counts();
+  return poses;
+}
+
+Pose pose_of(const json& message) {
+  const json& p = message["pose"]["position"];
+  const json& q = message["pose"]["orientation"];
+  return {Eigen::Quaterniond(q["w"].get<double>(), q["x"].get<double>(), q["y"].get<double>(),
+                             q["z"].get<double>()),
+          {p["x"].get<double>(), p["y"].get<double>(), p["z"].get<double>()}};
+}
+
+class EndToEnd : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    pcap_ = std::string(LILO_DATA_DIR) + '/' + GetParam() + "/data.pcap";
+    if (!std::filesystem::exists(pcap_)) GTEST_SKIP() << pcap_ << " is not here";
+  }
+  std::string pcap_;
+};
+
+// Issue 2: fed at sensor speed over loopback, no packet and no scan is lost, and every pose is that
+// of the file to 1e-6 m and 1e-6 rad.
+TEST_P(EndToEnd, PosesAreThoseOfTheFile) {
+  const TemporaryFile slice("slice.pcap", beginning_of(pcap_, 10'000'000));
+  DriverCounts counts;
+  const std::vector<Estimate> expected = poses_of_file(slice.path(), counts);
+  ASSERT_GT(expected.size(), 10U);
+
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  const std::string lilo = LILO_BIN_DIR "/lilo";
+  ChildProcess replay({lilo, "replay", slice.path(), "--data-port",
+                       std::to_string(lilod.data_port()), "--position-port",
+                       std::to_string(lilod.position_port())});
+  std::vector<json> messages;
+  while (messages.size() < expected.size()) {
+    const auto datagram = lilod.sink().receive(std::chrono::seconds(5));
+    if (!datagram) break;
+    EXPECT_LE(datagram->size(), 1200U);
+    const json message = json::parse(*datagram);
+    if (message.contains("pose")) messages.push_back(message);
+  }
+  EXPECT_EQ(replay.wait(std::chrono::seconds(60)), 0) << replay.standard_error();
+  EXPECT_EQ(lilod.stop(), 0);
+  ASSERT_EQ(messages.size(), expected.size()) << lilod.process().standard_error();
+
+  double moved_m = 0.0;
+  for (std::size_t k = 0; k < messages.size(); ++k) {
+    const json& message = messages[k];
+    EXPECT_EQ(message["seq"], k);
+    EXPECT_EQ(message["session"], messages[0]["session"]);
+    EXPECT_EQ(message["pose"]["lost_packets"], 0);
+    const Pose pose = pose_of(message);
+    const Pose error = pose.inverse() * expected[k].T_odom_sensor;
+    EXPECT_LT(error.translation_m.norm(), 1e-6) << k;
+    EXPECT_LT(so3_log(error.rotation.normalized()).norm(), 1e-6) << k;
+    // Without a GPS fix only the place in the hour comes from the sensor.
+    const std::int64_t stamp_ns =
+        message["pose"]["stamp"]["sec"].get<std::int64_t>() * 1'000'000'000 +
+        message["pose"]["stamp"]["nsec"].get<std::int64_t>();
+    EXPECT_EQ((stamp_ns - expected[k].stamp_ns) % kHourNs, 0) << k;
+    moved_m = std::max(moved_m, pose.translation_m.norm());
+  }
+  EXPECT_GT(moved_m, 1.0) << "the comparison says nothing when all poses are the identity";
+}
+
+INSTANTIATE_TEST_SUITE_P(Loopback, EndToEnd, testing::Values("sim_vlp16_town"),
+                         [](const auto& test) { return std::string(test.param); });
+
+}  // namespace
+}  // namespace lilo
