@@ -1,11 +1,11 @@
 #include "tools/plot/plot_command.hpp"
 
-#include "config/config.hpp"
 #include "drivers/scan_source.hpp"
 #include "tools/eval/associate.hpp"
 #include "tools/plot/scan_view.hpp"
 #include "tools/plot/trajectory_view.hpp"
 #include "tools/progress_bar.hpp"
+#include "tools/tool_config.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -31,8 +31,7 @@ std::string base_name(const std::string& path) {
 }
 
 std::unique_ptr<ScanSource> open_input(const PlotOptions& options) {
-  const Config config = options.config.empty() ? Config{} : load_config(options.config);
-  return open_scans(options.input, config.sensor);
+  return open_scans(options.input, tool_config(options.config).sensor);
 }
 
 std::optional<Pose> pose_of(const Trajectory& trajectory, const Scan& scan, std::size_t ordinal) {

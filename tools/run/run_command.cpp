@@ -1,11 +1,11 @@
 #include "tools/run/run_command.hpp"
 
-#include "config/config.hpp"
 #include "tools/plot/trajectory_view.hpp"
 #include "tools/progress_bar.hpp"
 #include "tools/run/odometry_run.hpp"
 #include "tools/run/run_report.hpp"
 #include "tools/text_file.hpp"
+#include "tools/tool_config.hpp"
 
 #include <fmt/format.h>
 
@@ -60,7 +60,7 @@ void write_results(const RunOptions& options, const OdometryRun& run, const MapP
 }
 
 void run_run(const RunOptions& options) {
-  const Config config = options.config.empty() ? Config{} : load_config(options.config);
+  const Config config = tool_config(options.config, options.profile);
   const std::unique_ptr<ScanSource> source = open_scans(options.input, config.sensor);
   try_outputs(options);
   MapPoints map;

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "config/config.hpp"
+
+#include <string>
+
+namespace lilo {
+
+/// The configuration a tool was asked for: a YAML file, or what is built in when `file` is empty;
+/// then the odometry profile of that name, unless that is empty. Throws std::runtime_error, one
+/// line for every mistake.
+Config tool_config(const std::string& file, const std::string& profile = {});
+
+}  // namespace lilo
