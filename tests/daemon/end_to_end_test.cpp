@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <vector>
 
 namespace lilo {
@@ -17,14 +20,21 @@ using nlohmann::json;
 
 constexpr std::int64_t kHourNs = 3'600'000'000'000;
 
-/// The first bytes of a capture: a pcap may end anywhere. All of it when LILO_LONG_TESTS is set.
+/// Whole records of a capture, up to `bytes` of it; all of it when LILO_LONG_TESTS is set. A pcap
+/// is a header of 24 bytes and records of 16 bytes and what their third word says.
 std::string beginning_of(const std::string& path, std::size_t bytes) {
-  if (std::getenv("LILO_LONG_TESTS") != nullptr) bytes = std::filesystem::file_size(path);
-  std::string text(bytes, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  return text;
+  std::ostringstream all;
+  all << std::ifstream(path, std::ios::binary).rdbuf();
+  std::string text = all.str();
+  if (std::getenv("LILO_LONG_TESTS") != nullptr) return text;
+  std::size_t end = 24;
+  while (end + 16 <= text.size()) {
+    std::uint32_t captured = 0;
+    std::memcpy(&captured, text.data() + end + 8, sizeof(captured));
+    if (end + 16 + captured > std::min(bytes, text.size())) break;
+    end += 16 + captured;
+  }
+  return text.substr(0, end);
 }
 
 /// The same file read as a file, scan by scan.
