@@ -19,4 +19,7 @@ struct LaserCorrection {
 void write_calibration_yaml(const std::string& path, const std::vector<LaserCorrection>& lasers,
                             bool two_point);
 
+/// Writes the form that Velodyne delivers with an HDL-64E (db.xml).
+void write_calibration_xml(const std::string& path, const std::vector<LaserCorrection>& lasers);
+
 }  // namespace lilo::sim

@@ -9,22 +9,27 @@
 
 namespace lilo::sim {
 
-/// Past-the-hour clock of the sensor, started by GPS (UTC) or by its own power-up.
+/// Past-the-hour clock of the sensor, set by GPS (UTC) or started by its own power-up.
 class SensorClock {
  public:
-  explicit SensorClock(std::int64_t utc_of_start_ns) : utc_of_start_ns_(utc_of_start_ns) {}
+  /// `late_wrap_s`: how long after the hour the clock counts on beyond 3600 s before it starts
+  /// again, as real units do at times.
+  explicit SensorClock(std::int64_t utc_of_start_ns, double late_wrap_s = 0.0)
+      : origin_ns_(utc_of_start_ns), late_ns_(static_cast<std::int64_t>(late_wrap_s * 1e9)) {}
 
-  /// From here on the clock counts from zero: power-up without GPS.
-  void restart(std::int64_t time_ns) { utc_of_start_ns_ = -time_ns; }
+  /// Counts from zero from here on: power-up without GPS.
+  void restart(std::int64_t time_ns) { origin_ns_ = -time_ns; }
   /// Whole microseconds past the hour `time_ns` after the recording's start.
   [[nodiscard]] std::uint32_t stamp_us(std::int64_t time_ns) const {
     constexpr std::int64_t kHour_ns = 3'600'000'000'000;
-    const std::int64_t past = (utc_of_start_ns_ + time_ns) % kHour_ns;
-    return static_cast<std::uint32_t>(((past + kHour_ns) % kHour_ns) / 1000);
+    std::int64_t past = (origin_ns_ + time_ns) % kHour_ns;
+    if (past < late_ns_ && time_ns > past) past += kHour_ns;  // the hour ended in this recording
+    return static_cast<std::uint32_t>(past / 1000);
   }
 
  private:
-  std::int64_t utc_of_start_ns_;
+  std::int64_t origin_ns_;
+  std::int64_t late_ns_;
 };
 
 /// What an encoder works with. All must outlive it.
@@ -66,6 +71,8 @@ class Encoder {
   virtual Packet encode(std::int64_t start_ns) = 0;
   /// From the first firing of a packet to that of the next.
   [[nodiscard]] virtual std::int64_t period_ns() const = 0;
+  /// The sensor was switched off and on.
+  virtual void power_up() {}
 };
 
 }  // namespace lilo::sim

@@ -46,7 +46,7 @@ double reflectivity(Material material) {
 
 }  // namespace
 
-Laser::Glint Laser::cast(const Vec3& origin, const Vec3& direction, double time_s) {
+Laser::Glint Laser::cast(const Vec3& origin, const Vec3& direction, double time_s) const {
   const Hit hit = scene_.cast(origin, direction, time_s, options_.max_range_m);
   if (!hit.found || hit.range_m < options_.min_range_m) return {};
   double cosine = std::abs(hit.normal.dot(direction));

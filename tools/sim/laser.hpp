@@ -29,12 +29,16 @@ class Laser {
 
   /// Shots are random numbers in the order of the calls. `origin` and `direction` in the world.
   Shot fire(const Vec3& origin, const Vec3& direction, double time_s);
+  /// Distance to the surface itself, without noise; 0: none within the range limits.
+  [[nodiscard]] double range_m(const Vec3& origin, const Vec3& direction, double time_s) const {
+    return cast(origin, direction, time_s).range_m;
+  }
 
  private:
   struct Glint {
     double range_m = 0.0, power = 0.0, brightness = 0.0;
   };
-  Glint cast(const Vec3& origin, const Vec3& direction, double time_s);
+  [[nodiscard]] Glint cast(const Vec3& origin, const Vec3& direction, double time_s) const;
   [[nodiscard]] Echo echo_of(const Glint& glint);
   Shot fire_wide(const Vec3& origin, const Vec3& direction, double time_s);
 

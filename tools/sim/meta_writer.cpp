@@ -37,6 +37,10 @@ void write_meta(const std::string& folder, const SimOptions& options, const SimS
   meta["start_azimuth_deg"] = rounded(rotor.azimuth_deg(0.0));
   meta["revolutions"] = summary.revolutions;
   meta["packets_sent"] = summary.packets_sent;
+  meta["packets_lost"] = summary.faults.lost;
+  meta["duplicates"] = summary.faults.duplicates;
+  meta["reordered"] = summary.faults.reordered;
+  meta["garbage"] = summary.faults.garbage;
   meta["position_packets"] = summary.position_packets;
   meta["path_length_m"] = rounded(path.length_m);
   meta["max_speed_mps"] = rounded(path.max_speed_mps);
@@ -49,6 +53,10 @@ void write_meta(const std::string& folder, const SimOptions& options, const SimS
   meta["dropout"] = options.sensor.dropout;
   meta["max_range_m"] = options.sensor.max_range_m;
   meta["dual"] = options.sensor.returns == ReturnMode::dual;
+  meta["two_point"] = options.sensor.two_point;
+  meta["hdl_azimuth"] = options.sensor.turning_block ? "firing" : "block";
+  meta["tilt_deg"] = options.motion.tilt_deg;
+  meta["gps"] = options.sensor.gps;
   meta["movers"] = scene.mover_count();
   meta["triangles"] = scene.triangle_count();
   write_text(folder + "/meta.json", meta.dump(2) + "\n");

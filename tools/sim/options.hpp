@@ -22,6 +22,8 @@ struct SensorOptions {
   double max_range_m = 100.0;
   double min_range_m = 0.4;
   bool gps = true;  ///< position packets with GPRMC and PPS, sensor clock equal to UTC
+  double clock_at_start_s = 0.0;  ///< without GPS: what the sensor's clock shows at the start
+  double late_hour_wrap_s = 0.0;  ///< counts on beyond 3600 s for so long
   bool turning_block =
       false;               ///< HDL-64E: the head turns while a block fires (else one azimuth each)
   bool two_point = false;  ///< HDL-64E: near ranges need the two-point distance correction
@@ -40,11 +42,6 @@ struct FaultOptions {
   double restart_gap_s = 1.5;    ///< silence of a restarting sensor
   double host_step_at_s = -1.0;  ///< the capturing computer's clock jumps; negative: never
   double host_step_s = 0.0;
-
-  [[nodiscard]] bool any() const {
-    return loss > 0.0 || bursts_per_minute > 0.0 || duplicates > 0.0 || reorder > 0.0 ||
-           garbage > 0.0 || restart_at_s >= 0.0 || host_step_at_s >= 0.0;
-  }
 };
 
 struct SimOptions {

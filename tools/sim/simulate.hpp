@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tools/sim/faults.hpp"
 #include "tools/sim/options.hpp"
 
 #include <functional>
@@ -9,8 +10,9 @@ namespace lilo::sim {
 
 struct SimSummary {
   std::size_t revolutions = 0;
-  std::uint64_t packets_sent = 0;
+  std::uint64_t packets_sent = 0;  ///< data packets the sensor made
   std::uint64_t position_packets = 0;
+  FaultCounts faults;  ///< and what became of them on the way
   double path_length_m = 0.0;
 };
 

@@ -81,7 +81,7 @@ std::vector<Revolution> complete_revolutions(const Rotor& rotor, double end_s) {
     const double middle = rotor.time_of(turn * 360.0 + 180.0, end_s);
     const double end = rotor.time_of((turn + 1.0) * 360.0, end_s);
     if (end < 0.0) break;
-    revolutions.push_back({start, middle, end});
+    revolutions.push_back({start, middle, end, 0});
     start = end;
     turn += 1.0;
   }
@@ -101,7 +101,8 @@ PathSummary write_truth(const std::string& folder, const SensorPath& path,
     starts += tum_line(start, pose_of(pose(r.start_s)));
     ends += tum_line(end, pose_of(pose(r.end_s)));
     kitti += kitti_line(pose(r.end_s));
-    table += fmt::format("{},{},{},{},0,0\n", k, start, utc_text(start_utc_ns, r.middle_s), end);
+    table += fmt::format("{},{},{},{},0,{}\n", k, start, utc_text(start_utc_ns, r.middle_s), end,
+                         r.packets_lost);
   }
   for (int k = 0; k <= static_cast<int>(duration_s / 0.005 + 1e-6); ++k) {
     dense += tum_line(utc_text(start_utc_ns, 0.005 * k), pose_of(pose(0.005 * k)));

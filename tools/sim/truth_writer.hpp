@@ -10,7 +10,8 @@ namespace lilo::sim {
 
 /// A complete turn of the head, azimuth 0 to 360; times after the recording's start.
 struct Revolution {
-  double start_s, middle_s, end_s;
+  double start_s = 0.0, middle_s = 0.0, end_s = 0.0;
+  int packets_lost = 0;
 };
 
 /// All revolutions that lie inside [0, end_s].
@@ -23,10 +24,10 @@ struct PathSummary {
 };
 
 /// Writes gt_start.tum, gt_end.tum, gt_end_kitti.txt (poses at the start and end of each
-/// revolution), gt_dense.tum (every 5 ms), revs.csv and frame.txt (world from the frame of all
-/// others) into `folder`. All poses are of the sensor in the sensor frame at the start of
-/// revolution 0; TUM stamps are UTC seconds. Throws std::runtime_error when a file cannot be
-/// written.
+/// revolution), gt_dense.tum (every 5 ms), revs.csv (its column gap counts lost packets) and
+/// frame.txt (world from the frame of all others) into `folder`. All poses are of the sensor in the
+/// sensor frame at the start of revolution 0; TUM stamps are UTC seconds. Throws std::runtime_error
+/// when a file cannot be written.
 PathSummary write_truth(const std::string& folder, const SensorPath& path,
                         const std::vector<Revolution>& revolutions, std::int64_t start_utc_ns,
                         double duration_s);

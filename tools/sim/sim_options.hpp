@@ -1,0 +1,26 @@
+#pragma once
+
+#include "tools/sim/options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace lilo::sim {
+
+/// What the command line says before it is settled.
+struct SimArguments {
+  SimOptions options;
+  std::string folder;
+  std::string start_utc;         ///< seconds, kept as text: a double rounds them
+  double hour_wrap_at_s = -1.0;  ///< negative: not asked for
+  bool quiet = false;
+};
+
+void add_options(CLI::App& command, SimArguments& arguments);
+
+/// Defaults that depend on other options, and checks across options.
+/// Throws CLI::ValidationError naming the option.
+void settle(const CLI::App& command, SimArguments& arguments);
+
+}  // namespace lilo::sim
