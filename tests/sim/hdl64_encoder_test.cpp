@@ -19,7 +19,8 @@ const MotionOptions kDrive{.speed_mps = 25.0, .duration_s = 3.0, .start_in_motio
 /// Timing of one shot after the packet's first: firing `pair` of the packet, channel in its bank.
 double shot_us(bool s2, std::size_t pair, std::size_t channel) {
   constexpr std::array<double, 4> kS2{0.0, 1.26, 2.46, 3.66}, kS3{0.0, 1.3, 2.5, 3.7};
-  const auto p = static_cast<double>(pair), group = static_cast<double>(channel / 4);
+  const std::size_t fourth = channel / 4;
+  const auto p = static_cast<double>(pair), group = static_cast<double>(fourth);
   return s2 ? 48.0 * p + 6.0 * group + kS2[channel % 4] : 57.6 * p + 7.2 * group + kS3[channel % 4];
 }
 

@@ -25,7 +25,7 @@ class StatusBytes {
   /// Pair of the `index`-th packet after power-up, sent at `utc_s`.
   [[nodiscard]] Pair at(std::uint64_t index, std::int64_t utc_s) const;
 
-  static constexpr std::uint64_t kLap = 260U * 16U;
+  static constexpr std::uint64_t kLap = std::uint64_t{260} * 16;
 
  private:
   void add_table(const std::vector<LaserCorrection>& lasers);

@@ -42,6 +42,11 @@ World build_world(const std::string& name, std::uint64_t seed, double length_m);
 
 World build_street(std::uint64_t seed, double length_m);
 World build_park(std::uint64_t seed, double length_m);
+World build_highway(std::uint64_t seed, double length_m);
+World build_country(std::uint64_t seed, double length_m);
+World build_field(std::uint64_t seed, double length_m);
+/// Always 60 m long; the sensor stops before its end.
+World build_corridor(std::uint64_t seed, double length_m);
 
 /// Gives every traveller its shape and its motion; call before Scene::finish(). Travellers that
 /// would come within reach of the sensor's own path stay beside it by their lane.
