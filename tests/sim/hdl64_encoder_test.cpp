@@ -41,7 +41,7 @@ Vec3 manual_point(const LaserCorrection& c, unsigned raw, double azimuth_rad, bo
       (distance1 + corr_x) * std::cos(vert) * std::sin(rot) - c.horizontal_offset_m * std::cos(rot);
   const double y =
       (distance1 + corr_y) * std::cos(vert) * std::cos(rot) + c.horizontal_offset_m * std::sin(rot);
-  return {y, -x, (distance1 + corr_y) * std::sin(vert) + c.vertical_offset_m};
+  return {y, -x, (distance1 + 0.5 * (corr_x + corr_y)) * std::sin(vert) + c.vertical_offset_m};
 }
 
 struct Case {

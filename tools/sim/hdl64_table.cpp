@@ -81,7 +81,7 @@ Vec3 hdl64_point(const LaserCorrection& laser, double raw_m, double angle_rad, b
   }
   const double across = range_x * elevation.cos * angle.sin - h * angle.cos;
   const double ahead = range_y * elevation.cos * angle.cos + h * angle.sin;
-  return {ahead, -across, range_y * elevation.sin + laser.vertical_offset_m};
+  return {ahead, -across, 0.5 * (range_x + range_y) * elevation.sin + laser.vertical_offset_m};
 }
 
 }  // namespace lilo::sim

@@ -16,7 +16,8 @@ std::vector<LaserCorrection> make_hdl64_table(Sensor sensor, bool two_point, std
 
 /// The manual's distance correction, raw range to point in the sensor frame (x forward, y left, z
 /// up), for a laser at `angle_rad` = azimuth - rotation correction, clockwise. With `two_point` the
-/// near corrections apply below 25.04 m (user manual S3, appendix "two-point calibration").
+/// near corrections apply below 25.04 m (user manual S3, appendix "two-point calibration"); z takes
+/// the mean of both, as VeloView does, since the manual's y alone would bend z with the azimuth.
 Vec3 hdl64_point(const LaserCorrection& laser, double raw_m, double angle_rad, bool two_point);
 
 }  // namespace lilo::sim
