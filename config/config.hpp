@@ -18,6 +18,21 @@ struct PublishConfig {
   std::string child_frame_id = "velodyne";  ///< the frame whose pose is published
 };
 
+/// Who may ask for poses.
+struct SubscribeConfig {
+  std::string bind_address = "127.0.0.1";
+  std::uint16_t port = 9871;       ///< 0: nobody can ask
+  std::vector<std::string> allow;  ///< IPv4 addresses besides loopback
+  int max_clients = 16;
+  double lease_s = 5.0;  ///< longest, and the one granted when none is asked for
+};
+
+/// What the daemon says of itself.
+struct HealthConfig {
+  bool publish = true;       ///< a datagram a second to all sinks and clients
+  std::string metrics_file;  ///< for Prometheus; empty: lilo.prom in systemd's runtime directory
+};
+
 /// Real-time measures, each of them optional.
 struct RealtimeConfig {
   int worker_cpu = -1;       ///< pin the worker here; -1: do not pin
@@ -31,6 +46,8 @@ struct Config {
   UdpConfig udp;
   OdometryConfig odometry;
   PublishConfig publish;
+  SubscribeConfig subscribe;
+  HealthConfig health;
   RealtimeConfig realtime;
 };
 

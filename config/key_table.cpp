@@ -125,6 +125,32 @@ std::vector<Key> publish_keys() {
   };
 }
 
+std::vector<Key> subscribe_keys() {
+  return {
+      text("subscribe.bind_address", LILO_MEMBER(subscribe.bind_address), kAddress, kRestart,
+           "Address to listen on for requests of clients. 127.0.0.1: this computer only."),
+      integer("subscribe.port", LILO_MEMBER(subscribe.port), 0, 65535, "", kRestart,
+              "Port to listen on for requests of clients; 0: nobody can ask."),
+      list("subscribe.allow", LILO_MEMBER(subscribe.allow), kAddress, kLive,
+           "Other computers that may ask. They have to echo a token first, so that nobody can have "
+           "poses sent to a third one."),
+      integer("subscribe.max_clients", LILO_MEMBER(subscribe.max_clients), 1, 256, "", kRestart,
+              "Subscribers at one time."),
+      real("subscribe.lease_s", LILO_MEMBER(subscribe.lease_s), 1.0, 3600.0, "s", kLive,
+           "A subscription ends when it is not renewed for this long."),
+  };
+}
+
+std::vector<Key> health_keys() {
+  return {
+      boolean("health.publish", LILO_MEMBER(health.publish), kLive,
+              "Sends a health datagram a second to all sinks and subscribers."),
+      text("health.metrics_file", LILO_MEMBER(health.metrics_file), kOptionalPath, kLive,
+           "File with the same for Prometheus' node_exporter, renewed every second. Empty: "
+           "lilo.prom in the folder systemd gives us, or none."),
+  };
+}
+
 std::vector<Key> realtime_keys() {
   return {
       integer("realtime.worker_cpu", LILO_MEMBER(realtime.worker_cpu), -1, 1023, "", kRestart,
@@ -150,14 +176,16 @@ std::vector<Section> config_sections() {
       {"odometry", "How scans become poses."},
       {"odometry.paper", "The choices of profile paper."},
       {"publish", "Where poses go."},
+      {"subscribe", "Who may ask for poses."},
+      {"health", "What lilod says of itself."},
       {"realtime", "Real-time measures. One that the system refuses is a warning, not an error."},
   };
 }
 
 std::vector<Key> config_keys() {
   std::vector<Key> keys;
-  for (auto section :
-       {sensor_keys, udp_keys, odometry_keys, paper_keys, publish_keys, realtime_keys}) {
+  for (auto section : {sensor_keys, udp_keys, odometry_keys, paper_keys, publish_keys,
+                       subscribe_keys, health_keys, realtime_keys}) {
     for (Key& key : section()) keys.push_back(std::move(key));
   }
   return keys;

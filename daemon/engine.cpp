@@ -3,7 +3,9 @@
 #include <future>
 #include <optional>
 #include <pthread.h>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace lilo {
 namespace {
@@ -80,6 +82,12 @@ RealtimeReport Engine::start() {
   }
   report.locked_memory_kb = locked_memory_kb();
   return report;
+}
+
+bool Engine::reset() {
+  if (counters_.resets_asked != counters_.resets_done) return false;
+  ++counters_.resets_asked;
+  return true;
 }
 
 void Engine::stop() {

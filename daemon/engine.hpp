@@ -8,18 +8,9 @@
 #include "daemon/worker.hpp"
 
 #include <memory>
-#include <string>
 #include <thread>
-#include <vector>
 
 namespace lilo {
-
-/// What is in force after start(), and what the system refused.
-struct RealtimeReport {
-  ThreadPolicy receiver, worker;
-  long locked_memory_kb = 0;
-  std::vector<std::string> refusals;
-};
 
 /// The receiver and the worker thread with what lies between them. The thread that owns the engine
 /// is the consumer of reports().
@@ -40,6 +31,10 @@ class Engine {
   [[nodiscard]] Wakeup& report_ready() { return report_ready_; }
   [[nodiscard]] const PipelineCounters& counters() const { return counters_; }
   [[nodiscard]] const Receiver& receiver() const { return receiver_; }
+  /// The next scan starts a new odometry. False while the last one that was asked for has not
+  /// begun.
+  bool reset();
+  [[nodiscard]] std::size_t ring_slots() const { return scans_.capacity(); }
   /// Scans that wait or are being processed.
   [[nodiscard]] std::size_t scans_waiting() const { return scans_.size(); }
 

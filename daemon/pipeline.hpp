@@ -21,13 +21,15 @@ struct ScanSlot {
 
 struct PoseReport {
   Estimate estimate;
-  std::uint64_t seq = 0;            ///< scans processed in this session before this one
+  std::uint64_t seq = 0;            ///< poses of this odometry before this one
   std::int64_t last_packet_ns = 0;  ///< monotonic, as in ScanSlot
   std::int64_t processing_ns = 0;   ///< time in Odometry::process
   std::array<std::int64_t, kStageCount> stage_ns{};
   PacketCounts packets;
   ClockSource clock = ClockSource::host;
   bool scan_complete = true;
+  std::uint64_t resets = 0;               ///< odometries begun before this one
+  std::uint64_t worker_minor_faults = 0;  ///< page faults of the thread since its start
 };
 
 using ScanRing = SpscRing<ScanSlot>;
@@ -40,6 +42,9 @@ struct PipelineCounters {
   std::atomic<std::uint64_t> scans_skipped{0};    ///< worker: passed over to catch up
   std::atomic<std::uint64_t> scans_processed{0};  ///< worker
   std::atomic<std::uint64_t> reports_dropped{0};  ///< worker: the publisher was asleep
+  std::atomic<std::uint64_t> ring_high_water{0};  ///< receiver: most scans that ever waited
+  std::atomic<std::uint64_t> resets_asked{0};     ///< publisher
+  std::atomic<std::uint64_t> resets_done{0};      ///< worker
   std::atomic<bool> behind{false};                ///< receiver asks, worker answers by skipping
   std::atomic<bool> stop{false};                  ///< publisher asks both to end
 };

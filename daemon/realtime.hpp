@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <sys/types.h>
+#include <vector>
 
 namespace lilo {
 
@@ -11,6 +12,13 @@ struct ThreadPolicy {
   std::string policy;  ///< "SCHED_OTHER", "SCHED_FIFO", ...
   int priority = 0;
   std::string cpus;  ///< "0-3,7"
+};
+
+/// What is in force after the start, and what the system refused.
+struct RealtimeReport {
+  ThreadPolicy receiver, worker;
+  long locked_memory_kb = 0;
+  std::vector<std::string> refusals;
 };
 
 /// Each of these returns why the system refused, in one line for the log, or nothing.
@@ -22,7 +30,7 @@ std::optional<std::string> limit_stack_of_new_threads(std::size_t bytes);
 
 ThreadPolicy policy_of_this_thread();
 
-/// Of /proc/self/status: bytes that mlock holds in memory.
+/// Of /proc/self/status: kilobytes that mlock holds in memory.
 long locked_memory_kb();
 
 }  // namespace lilo

@@ -97,6 +97,7 @@ Scan& Receiver::exchange(Scan&) {
   }
   if (slot != nullptr) {
     scans_.commit();
+    if (scans_.size() > counters_.ring_high_water) counters_.ring_high_water = scans_.size();
     scan_ready_.signal();
   } else {
     add(counters_.scans_overrun);

@@ -1,8 +1,8 @@
 #include "daemon/service.hpp"
 
-#include "daemon/clock.hpp"
-#include "daemon/log.hpp"
+#include "config/key.hpp"
 #include "daemon/notify.hpp"
+#include "daemon/pose_message.hpp"
 
 #include <fmt/format.h>
 #include <opencv2/core/utility.hpp>
@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <sstream>
 #include <unistd.h>
 #include <utility>
 
@@ -30,7 +31,11 @@ void log_report(const RealtimeReport& report) {
   }
 }
 
-std::uint64_t dropped(const PipelineCounters& c) { return c.scans_overrun + c.scans_skipped; }
+std::string in_words(const Health& h) {
+  if (h.rate_hz < 0.5) return h.driver.data_packets == 0 ? "waiting for the sensor" : "no scans";
+  return fmt::format("{} {:.0f} Hz, packets lost {}, scans dropped {}", to_string(h.status),
+                     h.rate_hz, h.driver.packets_lost, h.scans_dropped);
+}
 
 }  // namespace
 
@@ -40,18 +45,19 @@ Service::Service(const Config& config, std::string config_path)
       signals_(io_, SIGINT, SIGTERM, SIGHUP),
       second_(io_),
       watchdog_(io_),
-      sinks_(io_),
       engine_(config, open_udp(config.udp)),
-      report_ready_(io_, dup(engine_.report_ready().fd())),
-      message_{new_session(), config.publish.frame_id, config.publish.child_frame_id} {
-  sinks_.set(config.publish.sinks);
+      monitor_(engine_),
+      publisher_(io_, config, engine_, monitor_),
+      report_ready_(io_, dup(engine_.report_ready().fd())) {
   // OpenCV's pool would inherit the worker's core and policy, and fight it for both.
   cv::setNumThreads(1);
 }
 
 void Service::run() {
-  log_report(engine_.start());
-  spdlog::info("session {}: listening on {}:{}, {} sink(s)", message_.session,
+  const RealtimeReport report = engine_.start();
+  log_report(report);
+  monitor_.started(report);
+  spdlog::info("session {}: listening on {}:{}, {} sink(s)", publisher_.session(),
                config_.udp.bind_address, config_.udp.data_port, config_.publish.sinks.size());
   await_signal();
   await_reports();
@@ -62,8 +68,10 @@ void Service::run() {
   io_.run();
   notify::stopping();
   engine_.stop();
-  publish_poses();
-  spdlog::info("{} poses published, {} scans dropped", poses_, dropped(engine_.counters()));
+  publisher_.send_poses();
+  publisher_.tick();
+  spdlog::info("{} poses published, {} scans dropped", publisher_.last_health().poses_sent,
+               publisher_.last_health().scans_dropped);
 }
 
 void Service::await_reports() {
@@ -71,24 +79,9 @@ void Service::await_reports() {
                            [this](const error_code& error) {
                              if (error) return;
                              engine_.report_ready().wait();
-                             publish_poses();
+                             publisher_.send_poses();
                              await_reports();
                            });
-}
-
-void Service::publish_poses() {
-  ReportRing& reports = engine_.reports();
-  while (const PoseReport* report = reports.front()) {
-    const std::string_view datagram = write_pose(message_, *report, monotonic_ns(), json_);
-    if (datagram.empty()) {
-      ++not_finite_;
-    } else {
-      sinks_.send(datagram);
-      ++poses_;
-    }
-    status_ = report->estimate.status;
-    reports.release();
-  }
 }
 
 void Service::await_signal() {
@@ -104,7 +97,37 @@ void Service::await_signal() {
   });
 }
 
-void Service::reload() { spdlog::warn("{}: reload is not supported yet", config_path_); }
+// A bad file changes nothing.
+void Service::reload() {
+  notify::reloading();
+  try {
+    apply(load_config(config_path_));
+    monitor_.config_was_bad(false);
+  } catch (const ConfigError& error) {
+    monitor_.config_was_bad(true);
+    std::istringstream lines(error.what());
+    for (std::string line; std::getline(lines, line);) spdlog::error("{}", line);
+    spdlog::error("the configuration in force stays");
+  }
+  notify::ready(status_);
+}
+
+// What can change does; what cannot is named, and stays as it was.
+void Service::apply(const Config& read) {
+  const std::vector<Key> keys = config_keys();
+  const std::vector<const Key*> differing = differing_keys(keys, read, config_);
+  for (const Key* key : differing) {
+    const std::string value = to_yaml(key->get(read));
+    if (key->reload == Reload::live) {
+      key->set(config_, key->get(read));
+      spdlog::info("{} is now {}", key->path, value);
+    } else {
+      spdlog::warn("{}: {} needs a restart", key->path, value);
+    }
+  }
+  publisher_.configure(config_);
+  spdlog::info("{} read again, {} key(s) differ", config_path_, differing.size());
+}
 
 void Service::await_second() {
   second_.expires_after(std::chrono::seconds(1));
@@ -115,29 +138,24 @@ void Service::await_second() {
   });
 }
 
-// Once a second: the state in words for `systemctl status`, and new problems for the log.
+// Health for the clients, the state in words for `systemctl status`, new problems for the log.
 void Service::supervise() {
-  const PipelineCounters& counters = engine_.counters();
-  const DriverCounts driver = engine_.receiver().driver_counts().driver();
-  const SourceCounts source = engine_.receiver().driver_counts().source();
-  const std::uint64_t rate = poses_ - poses_a_second_ago_;
-  poses_a_second_ago_ = poses_;
-  const std::string words =
-      rate > 0 ? fmt::format("{} {} Hz, packets lost {}, scans dropped {}", to_string(status_),
-                             rate, driver.packets_lost, dropped(counters))
-               : fmt::format("no scans; {} packets so far", driver.data_packets);
-  notify::status(words);
+  publisher_.tick();
+  const Health& h = publisher_.last_health();
+  const std::string words = in_words(h);
+  if (words != status_) notify::status(words);
+  status_ = words;
 
-  const std::uint64_t problems = driver.packets_lost + driver.malformed_packets +
-                                 source.kernel_dropped + dropped(counters) + not_finite_ +
-                                 counters.reports_dropped + sinks_.send_errors();
+  const std::uint64_t problems = h.driver.packets_lost + h.driver.malformed_packets +
+                                 h.source.kernel_dropped + h.scans_dropped + h.poses_not_sent +
+                                 h.send_errors;
   if (problems == problems_logged_) return;
   problems_logged_ = problems;
   spdlog::warn(
       "packets lost {} (by the kernel {}), malformed {}; scans dropped {}; poses not sent {}; send "
       "errors {}",
-      driver.packets_lost, source.kernel_dropped, driver.malformed_packets, dropped(counters),
-      counters.reports_dropped + not_finite_, sinks_.send_errors());
+      h.driver.packets_lost, h.source.kernel_dropped, h.driver.malformed_packets, h.scans_dropped,
+      h.poses_not_sent, h.send_errors);
 }
 
 void Service::await_watchdog(std::int64_t interval_us) {

@@ -2,8 +2,8 @@
 
 #include "config/config.hpp"
 #include "daemon/engine.hpp"
-#include "daemon/pose_message.hpp"
-#include "daemon/sinks.hpp"
+#include "daemon/health_monitor.hpp"
+#include "daemon/publisher.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
@@ -11,42 +11,40 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include <cstdint>
+#include <string>
 
 namespace lilo {
 
 /// The daemon: an engine, and the main thread as its publisher and supervisor.
 class Service {
  public:
-  /// Binds the sockets and reserves the memory. Throws DriverError and std::system_error.
+  /// Binds the sockets and reserves the memory. Throws DriverError and std::runtime_error.
   Service(const Config& config, std::string config_path);
 
-  /// Until SIGINT or SIGTERM.
+  /// Until SIGINT or SIGTERM. SIGHUP reads the configuration again.
   void run();
 
  private:
-  void publish_poses();
   void await_reports();
   void await_signal();
   void await_second();
   void await_watchdog(std::int64_t interval_us);
   void supervise();
   void reload();
+  void apply(const Config& read);
   [[nodiscard]] bool worker_is_alive();
 
-  Config config_;
+  Config config_;  // in force
   std::string config_path_;
   boost::asio::io_context io_{1};
   boost::asio::signal_set signals_;
   boost::asio::steady_timer second_, watchdog_;
-  Sinks sinks_;
   Engine engine_;
+  HealthMonitor monitor_;
+  Publisher publisher_;
   boost::asio::posix::stream_descriptor report_ready_;
-  PoseMessageContext message_;
-  JsonWriter json_;
 
-  TrackingStatus status_ = TrackingStatus::initializing;
-  std::uint64_t poses_ = 0, poses_a_second_ago_ = 0;
-  std::uint64_t not_finite_ = 0;
+  std::string status_;
   std::uint64_t processed_at_last_look_ = 0;
   std::uint64_t problems_logged_ = 0;
 };

@@ -2,11 +2,20 @@
 
 #include "daemon/clock.hpp"
 
+#include <sys/resource.h>
+
 namespace lilo {
 namespace {
 
 void add(std::atomic<std::uint64_t>& counter) {
   counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+}
+
+// Of the calling thread.
+std::uint64_t minor_faults() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return static_cast<std::uint64_t>(usage.ru_minflt);
 }
 
 /// Time between the ends of the stages. A stage that ends twice in a scan counts both.
@@ -26,7 +35,8 @@ struct StageTimer {
 
 Worker::Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready,
                ReportRing& reports, Wakeup& report_ready, PipelineCounters& counters)
-    : odometry_(config),
+    : config_(config),
+      odometry_(config),
       scans_(scans),
       scan_ready_(scan_ready),
       reports_(reports),
@@ -40,10 +50,19 @@ void Worker::run() {
       scan_ready_.wait();
       continue;
     }
+    const std::uint64_t resets = counters_.resets_asked.load(std::memory_order_acquire);
+    if (resets != resets_) begin_again(resets);
     process(*slot);
     scans_.release();
     if (counters_.behind.exchange(false, std::memory_order_acquire)) skip_to_newest();
   }
+}
+
+void Worker::begin_again(std::uint64_t resets) {
+  odometry_.emplace(config_);
+  seq_ = 0;
+  resets_ = resets;
+  counters_.resets_done.store(resets, std::memory_order_release);
 }
 
 // A robot wants the pose of now: once the ring was full, all waiting scans but the newest go. The
@@ -58,7 +77,7 @@ void Worker::skip_to_newest() {
 void Worker::process(const ScanSlot& slot) {
   StageTimer timer;
   const std::int64_t start_ns = timer.last_ns;
-  const Estimate estimate = odometry_.process(slot.scan, {StageTimer::done, &timer});
+  const Estimate estimate = odometry_->process(slot.scan, {StageTimer::done, &timer});
   const std::int64_t end_ns = monotonic_ns();
   PoseReport* report = reports_.reserve();
   if (report != nullptr) {
@@ -69,7 +88,9 @@ void Worker::process(const ScanSlot& slot) {
                .stage_ns = timer.stage_ns,
                .packets = slot.scan.packets,
                .clock = slot.scan.clock,
-               .scan_complete = slot.scan.complete};
+               .scan_complete = slot.scan.complete,
+               .resets = resets_,
+               .worker_minor_faults = minor_faults()};
     reports_.commit();
     report_ready_.signal();
   } else {

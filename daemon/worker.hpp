@@ -4,10 +4,13 @@
 #include "daemon/pipeline.hpp"
 #include "daemon/wakeup.hpp"
 
+#include <cstdint>
+#include <optional>
+
 namespace lilo {
 
 /// Scans to poses, on a thread of its own. Never logs, never locks; allocates only where
-/// Odometry::process does.
+/// Odometry::process does, and for a reset.
 class Worker {
  public:
   Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready, ReportRing& reports,
@@ -17,16 +20,19 @@ class Worker {
   void run();
 
  private:
+  void begin_again(std::uint64_t resets);
   void skip_to_newest();
   void process(const ScanSlot& slot);
 
-  Odometry odometry_;
+  OdometryConfig config_;
+  std::optional<Odometry> odometry_;
   ScanRing& scans_;
   Wakeup& scan_ready_;
   ReportRing& reports_;
   Wakeup& report_ready_;
   PipelineCounters& counters_;
   std::uint64_t seq_ = 0;
+  std::uint64_t resets_ = 0;
 };
 
 }  // namespace lilo

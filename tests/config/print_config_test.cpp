@@ -49,6 +49,7 @@ Value another_value(const Key& key, const Value& now) {
     case KeyType::text:
       return std::string(key.form.valid(kHardPath) ? kHardPath : "10.0.0.1");
     case KeyType::list:
+      if (key.form.valid("10.0.0.1")) return std::vector<std::string>{"10.0.0.1", "10.0.0.2"};
       return std::vector<std::string>{"10.0.0.1:1", "localhost:65535"};
   }
   return now;

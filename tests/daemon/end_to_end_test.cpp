@@ -1,6 +1,7 @@
 #include "core/odometry.hpp"
 #include "drivers/scan_source.hpp"
 #include "tests/daemon/lilod_fixture.hpp"
+#include "tests/daemon/schema.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -79,12 +80,14 @@ TEST_P(EndToEnd, PosesAreThoseOfTheFile) {
   ChildProcess replay({lilo, "replay", slice.path(), "--data-port",
                        std::to_string(lilod.data_port()), "--position-port",
                        std::to_string(lilod.position_port())});
+  const json schema = protocol_schema();
   std::vector<json> messages;
   while (messages.size() < expected.size()) {
     const auto datagram = lilod.sink().receive(std::chrono::seconds(5));
     if (!datagram) break;
     EXPECT_LE(datagram->size(), 1200U);
     const json message = json::parse(*datagram);
+    EXPECT_EQ(violations(schema, message), std::vector<std::string>{});
     if (message.contains("pose")) messages.push_back(message);
   }
   EXPECT_EQ(replay.wait(std::chrono::seconds(60)), 0) << replay.standard_error();

@@ -22,11 +22,13 @@ std::string unique_path(const std::string& name) {
 Lilod::Lilod(const std::string& more, const std::map<std::string, std::string>& environment)
     : data_port_(free_udp_port()),
       position_port_(free_udp_port()),
+      server_port_(free_udp_port()),
       config_path_(unique_path("lilod.yaml")) {
   std::ofstream(config_path_) << "sensor:\n  model: auto\n"
                               << "udp:\n  bind_address: 127.0.0.1\n  data_port: " << data_port_
                               << "\n  position_port: " << position_port_ << '\n'
                               << "publish:\n  sinks: [\"" << sink_.endpoint() << "\"]\n"
+                              << "subscribe:\n  port: " << server_port_ << '\n'
                               << more;
   auto settings = environment;
   settings["NOTIFY_SOCKET"] = systemd_.path();

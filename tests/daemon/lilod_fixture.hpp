@@ -12,8 +12,8 @@ namespace lilo {
 /// A running lilod on free loopback ports, with the test as its sink and as its systemd.
 class Lilod {
  public:
-  /// `more`: YAML put behind the sections the fixture writes (sensor, udp, publish), so it may hold
-  /// any other. `environment` is added to ours.
+  /// `more`: YAML put behind the sections the fixture writes (sensor, udp, publish, subscribe), so
+  /// it may hold any other. `environment` is added to ours.
   explicit Lilod(const std::string& more = "",
                  const std::map<std::string, std::string>& environment = {});
   ~Lilod();
@@ -27,6 +27,7 @@ class Lilod {
 
   [[nodiscard]] std::uint16_t data_port() const { return data_port_; }
   [[nodiscard]] std::uint16_t position_port() const { return position_port_; }
+  [[nodiscard]] std::uint16_t server_port() const { return server_port_; }
   [[nodiscard]] const std::string& config_path() const { return config_path_; }
   UdpSocket& sink() { return sink_; }
   NotifySocket& systemd() { return systemd_; }
@@ -35,7 +36,7 @@ class Lilod {
  private:
   UdpSocket sink_;
   NotifySocket systemd_;
-  std::uint16_t data_port_, position_port_;
+  std::uint16_t data_port_, position_port_, server_port_;
   std::string config_path_;
   std::unique_ptr<ChildProcess> process_;
 };

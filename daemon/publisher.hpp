@@ -1,0 +1,60 @@
+#pragma once
+
+#include "config/config.hpp"
+#include "daemon/engine.hpp"
+#include "daemon/health_monitor.hpp"
+#include "daemon/pose_message.hpp"
+#include "daemon/server.hpp"
+#include "daemon/sinks.hpp"
+
+#include <boost/asio/io_context.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace lilo {
+
+/// Everything the daemon sends: poses and health, to sinks, subscribers and whoever asks. Owns the
+/// session. One thread; no allocation for a pose.
+class Publisher {
+ public:
+  /// Throws std::runtime_error when a socket cannot be had.
+  Publisher(boost::asio::io_context& io, const Config& config, Engine& engine,
+            HealthMonitor& monitor);
+
+  /// Sends all poses the worker has finished.
+  void send_poses();
+  /// Once a second: health, leases.
+  void tick();
+  /// Takes the keys that may change at run time.
+  void configure(const Config& config);
+
+  [[nodiscard]] const std::string& session() const { return message_.session; }
+  [[nodiscard]] const Health& last_health() const { return health_; }
+
+ private:
+  void send_pose(const PoseReport& report);
+  void begin_session(std::uint64_t resets);
+  bool reset(std::optional<Pose> start_pose);
+  void broadcast(std::string_view datagram);
+  std::string_view write_health_now();
+  [[nodiscard]] PublisherCounts counts() const;
+
+  Config config_;
+  Engine& engine_;
+  HealthMonitor& monitor_;
+  PoseMessageContext message_;
+  std::uint64_t resets_ = 0;
+  Pose T_odom_start_;  // where the odometry's own first pose is
+  std::optional<Pose> next_start_;
+  JsonWriter pose_json_, health_json_;
+  std::string_view last_pose_;
+  Health health_;
+  std::uint64_t poses_sent_ = 0, poses_not_sent_ = 0;
+  Sinks sinks_;
+  Server server_;
+};
+
+}  // namespace lilo

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/pose.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace lilo {
+
+inline constexpr std::size_t kMaxRequestBytes = 512;
+
+enum class RequestKind : std::uint8_t { subscribe, unsubscribe, query, reset };
+
+/// What a client asks for. See PROTOCOL.md.
+struct Request {
+  RequestKind kind = RequestKind::query;
+  std::string token;               ///< empty: none
+  std::optional<double> ttl_s;     ///< subscribe
+  std::string query;               ///< query: "hello", "pose" or "health"
+  std::optional<Pose> start_pose;  ///< reset
+};
+
+/// Either the request, or why it is none, in one line for the client.
+struct ParsedRequest {
+  std::optional<Request> request;
+  std::string error;
+};
+
+/// Never throws, whatever the bytes are.
+ParsedRequest parse_request(std::string_view datagram);
+
+}  // namespace lilo

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "tests/daemon/lilod_fixture.hpp"
+#include "tests/daemon/schema.hpp"
+#include "tests/daemon/vlp16_packets.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace lilo {
+
+using nlohmann::json;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// The next datagram that has `kind`, within two seconds. All that come are held against the
+/// schema.
+inline std::optional<json> next_of_kind(UdpSocket& socket, const std::string& kind) {
+  const auto deadline = std::chrono::steady_clock::now() + seconds(2);
+  while (std::chrono::steady_clock::now() < deadline) {
+    const auto datagram = socket.receive(milliseconds(100));
+    if (!datagram) continue;
+    json message = json::parse(*datagram);
+    EXPECT_LE(datagram->size(), 1200U);
+    EXPECT_EQ(violations(protocol_schema(), message), std::vector<std::string>{}) << *datagram;
+    if (message.contains(kind)) return message;
+  }
+  return std::nullopt;
+}
+
+inline json ask(UdpSocket& client, const Lilod& lilod, const std::string& request,
+                const std::string& kind) {
+  client.send_to(lilod.server_port(), request);
+  return next_of_kind(client, kind).value_or(json());
+}
+
+/// A VLP-16 in a round room, ten times as fast as life. Its clock goes on from turn to turn.
+class Sensor {
+ public:
+  void turn(const Lilod& lilod, double turns) {
+    PacketView packet;
+    for (double sent = 0.0; sent < turns * RoundRoomSource::kPacketsPerTurn; sent += 1.0) {
+      source_.read(packet, milliseconds(0));
+      const auto* bytes = reinterpret_cast<const char*>(packet.payload.data());
+      socket_.send_to(lilod.data_port(), std::string(bytes, packet.payload.size()));
+      std::this_thread::sleep_for(std::chrono::microseconds(130));
+    }
+  }
+
+ private:
+  RoundRoomSource source_{1'000'000};
+  UdpSocket socket_;
+};
+
+}  // namespace lilo

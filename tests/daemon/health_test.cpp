@@ -1,0 +1,130 @@
+#include "daemon/health.hpp"
+
+#include "daemon/metrics_file.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace lilo {
+namespace {
+
+using nlohmann::json;
+
+Health a_health() {
+  Health h;
+  h.stamp_ns = 1'700'000'000'500'000'000;
+  h.status = TrackingStatus::tracking;
+  h.driver.data_packets = 1000;
+  h.driver.packets_lost = 3;
+  h.latency_ms = {.p50 = 2.0, .p99 = 5.5, .max = 7.0};
+  h.realtime.worker = {.policy = "SCHED_FIFO", .priority = 40, .cpus = "1"};
+  return h;
+}
+
+TEST(Health, SaysEverythingInOneDatagram) {
+  JsonWriter out;
+  const json m = json::parse(write_health("0123456789abcdef", a_health(), out));
+  EXPECT_DOUBLE_EQ(m["timestamp"].get<double>(), 1700000000.5);
+  EXPECT_FALSE(m.contains("pose"));
+  const json& h = m["health"];
+  EXPECT_EQ(h["status"], "tracking");
+  EXPECT_EQ(h["packets"]["received"], 1000);
+  EXPECT_EQ(h["latency_ms"]["p99"], 5.5);
+  EXPECT_EQ(h["realtime"]["policy"], "SCHED_FIFO");
+  EXPECT_EQ(h["complaints"], json::array({"packets lost"}));
+  EXPECT_EQ(h["stages_ms"].size(), static_cast<std::size_t>(kStageCount));
+}
+
+// All counters at their widest, all complaints: what goes is the stages, never the datagram.
+TEST(Health, NeverOutgrowsTheDatagram) {
+  Health h = a_health();
+  const std::uint64_t huge = std::numeric_limits<std::uint32_t>::max() * std::uint64_t{1000};
+  h.driver = {huge, huge, huge, huge, huge, huge, huge, huge, huge};
+  h.source = {huge, huge, huge, huge, huge};
+  h.scans_processed = h.scans_dropped = h.poses_sent = h.poses_not_sent = h.send_errors = huge;
+  h.worker_minor_faults = h.major_faults = huge;
+  h.latency_ms = h.processing_ms = {12345.67, 12345.67, 12345.67};
+  h.stages_ms.fill(h.latency_ms);
+  h.status = TrackingStatus::degraded;
+  h.sensor_silent_s = 1e6;
+  h.config_error = h.metrics_error = true;
+  h.realtime.refusals = {"x"};
+  JsonWriter out;
+  const std::string_view text = write_health("0123456789abcdef", h, out);
+  ASSERT_FALSE(text.empty());
+  EXPECT_EQ(json::parse(text)["health"]["complaints"].size(), 7U);
+}
+
+TEST(Health, ComplaintsAreEmptyWhenAllIsWell) {
+  Health h = a_health();
+  h.driver.packets_lost = 0;
+  EXPECT_TRUE(complaints(h).empty());
+}
+
+// promtool's rules: HELP and TYPE before the samples, each metric once, counters end in _total,
+// values are numbers.
+TEST(Prometheus, FollowsTheTextFormat) {
+  std::istringstream lines(to_prometheus("0123456789abcdef", a_health()));
+  const std::regex sample(R"(([a-z_]+)(\{[a-z]+="[^"\n]*"\})? (-?[0-9.e+-]+))");
+  std::set<std::string> declared;
+  std::string current, type;
+  int samples = 0;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string hash, keyword, name;
+    if (line[0] == '#') {
+      words >> hash >> keyword >> name >> type;
+      if (keyword != "TYPE") continue;
+      EXPECT_TRUE(declared.insert(name).second) << line;
+      EXPECT_EQ(type == "counter", name.ends_with("_total")) << line;
+      current = name;
+      continue;
+    }
+    std::smatch match;
+    ASSERT_TRUE(std::regex_match(line, match, sample)) << line;
+    EXPECT_EQ(match[1], current);
+    ++samples;
+  }
+  EXPECT_GT(samples, 20);
+}
+
+TEST(RecentValues, QuantilesAreNearestRank) {
+  RecentValues values;
+  EXPECT_EQ(values.quantiles().max, 0.0);
+  for (int k = 1; k <= 100; ++k) values.add(101 - k);
+  EXPECT_EQ(values.quantiles().p50, 50.0);
+  EXPECT_EQ(values.quantiles().p99, 99.0);
+  EXPECT_EQ(values.quantiles().max, 100.0);
+  for (std::size_t k = 0; k < RecentValues::kCapacity; ++k) values.add(7.0);
+  EXPECT_EQ(values.quantiles().max, 7.0) << "old values are forgotten";
+}
+
+TEST(MetricsFile, IsReplacedWholeAndReadable) {
+  const std::string path = testing::TempDir() + "lilo_prom_" + std::to_string(getpid());
+  const mode_t before = umask(0077);
+  ASSERT_TRUE(replace_file(path, "one"));
+  ASSERT_TRUE(replace_file(path, "two"));
+  umask(before);
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  EXPECT_EQ(text.str(), "two");
+  struct stat status {};
+  stat(path.c_str(), &status);
+  EXPECT_EQ(status.st_mode & 0777U, 0644U);
+  EXPECT_FALSE(std::filesystem::exists(path + ".new"));
+  std::filesystem::remove(path);
+  EXPECT_FALSE(replace_file("/nonexistent/lilo.prom", "x"));
+}
+
+}  // namespace
+}  // namespace lilo

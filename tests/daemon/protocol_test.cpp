@@ -1,0 +1,100 @@
+#include "tests/daemon/conversation.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <unistd.h>
+
+namespace lilo {
+namespace {
+
+TEST(Protocol, SubscriberGetsPosesUntilItsLeaseEnds) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  UdpSocket client;
+  Sensor sensor;
+  const json hello = ask(client, lilod, R"({"subscribe":{"ttl_s":1}})", "hello");
+  EXPECT_EQ(hello["hello"]["ttl_s"], 1);
+  EXPECT_EQ(hello["hello"]["frame_id"], "odom");
+  sensor.turn(lilod, 3.0);
+  const auto pose = next_of_kind(client, "pose");
+  ASSERT_TRUE(pose);
+  EXPECT_EQ((*pose)["session"], hello["session"]);
+  std::this_thread::sleep_for(milliseconds(2100));  // leases are looked at once a second
+  while (client.receive(milliseconds(0))) {
+  }
+  sensor.turn(lilod, 2.0);
+  EXPECT_FALSE(client.receive(milliseconds(300))) << "the lease is over";
+  EXPECT_TRUE(next_of_kind(lilod.sink(), "pose")) << "sinks need no lease";
+}
+
+TEST(Protocol, UnsubscribeAndQuery) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  UdpSocket client;
+  Sensor sensor;
+  EXPECT_EQ(ask(client, lilod, R"({"query":"pose"})", "error")["error"]["reason"], "no pose yet");
+  ask(client, lilod, R"({"subscribe":{}})", "hello");
+  EXPECT_EQ(ask(client, lilod, R"({"unsubscribe":{}})", "hello")["hello"]["ttl_s"], 0);
+  sensor.turn(lilod, 3.0);
+  ASSERT_TRUE(next_of_kind(lilod.sink(), "pose"));
+  EXPECT_FALSE(client.receive(milliseconds(100)));
+  EXPECT_TRUE(ask(client, lilod, R"({"query":"pose"})", "pose").contains("pose"));
+  EXPECT_TRUE(ask(client, lilod, R"({"query":"health"})", "health").contains("health"));
+}
+
+// A new session, seq from 0, and the first pose where the client said.
+TEST(Protocol, ResetStartsANewSessionAtTheGivenPose) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  UdpSocket client;
+  Sensor sensor;
+  sensor.turn(lilod, 3.0);
+  const json before = next_of_kind(lilod.sink(), "pose").value_or(json());
+  while (lilod.sink().receive(milliseconds(100))) {
+  }
+  const json done = ask(client, lilod,
+                        R"({"reset":{"pose":{"position":{"x":10,"y":20,"z":0.5},)"
+                        R"("orientation":{"x":0,"y":0,"z":1,"w":0}}}})",
+                        "done");
+  EXPECT_EQ(done["done"]["request"], "reset");
+  EXPECT_TRUE(ask(client, lilod, R"({"reset":{}})", "error").contains("error")) << "under way";
+  sensor.turn(lilod, 3.0);
+  const json after = next_of_kind(lilod.sink(), "pose").value_or(json());
+  EXPECT_NE(after["session"], before["session"]);
+  EXPECT_EQ(after["seq"], 0);
+  EXPECT_EQ(after["pose"]["position"]["x"], 10);
+  EXPECT_EQ(after["pose"]["position"]["y"], 20);
+  EXPECT_NEAR(std::abs(after["pose"]["orientation"]["z"].get<double>()), 1.0, 1e-9);
+}
+
+TEST(Health, IsSentEverySecondAndSaysWhatIsInForce) {
+  Lilod lilod("realtime:\n  worker_cpu: 0\n");
+  ASSERT_TRUE(lilod.wait_ready());
+  Sensor().turn(lilod, 3.0);
+  const json first = next_of_kind(lilod.sink(), "health").value_or(json());
+  const json second = next_of_kind(lilod.sink(), "health").value_or(json());
+  EXPECT_NEAR(second["timestamp"].get<double>() - first["timestamp"].get<double>(), 1.0, 0.5);
+  EXPECT_EQ(second["health"]["packets"]["lost"], 0);
+  EXPECT_EQ(second["health"]["scans"]["dropped"], 0);
+  EXPECT_EQ(second["health"]["realtime"]["cpus"], "0");
+  EXPECT_GT(second["health"]["packets"]["received"], 100);
+}
+
+TEST(Metrics, AppearInTheRuntimeDirectory) {
+  const std::string folder = testing::TempDir() + "lilo_run_" + std::to_string(getpid());
+  std::filesystem::create_directories(folder);
+  {
+    Lilod lilod("", {{"RUNTIME_DIRECTORY", folder}});
+    ASSERT_TRUE(lilod.wait_ready());
+    ASSERT_TRUE(next_of_kind(lilod.sink(), "health"));
+    EXPECT_EQ(lilod.stop(), 0);
+  }
+  std::ostringstream text;
+  text << std::ifstream(folder + "/lilo.prom").rdbuf();
+  EXPECT_NE(text.str().find("\nlilo_packets_lost_total 0\n"), std::string::npos) << text.str();
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace lilo

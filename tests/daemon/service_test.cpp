@@ -1,0 +1,151 @@
+#include "tests/daemon/conversation.hpp"
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <random>
+#include <sstream>
+#include <sys/ptrace.h>
+#include <sys/wait.h>
+#include <vector>
+
+/// The daemon through what befalls it, seen from outside.
+namespace lilo {
+namespace {
+
+/// The file of a running lilod with `from` replaced by `to`, and SIGHUP.
+void change_config(Lilod& lilod, const std::string& from, const std::string& to) {
+  std::ostringstream text;
+  text << std::ifstream(lilod.config_path()).rdbuf();
+  std::string yaml = text.str();
+  yaml.replace(yaml.find(from), from.size(), to);
+  std::ofstream(lilod.config_path()) << yaml;
+  lilod.process().signal(SIGHUP);
+}
+
+TEST(Reload, TakesWhatCanChangeAndNamesTheRest) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  UdpSocket other;
+  change_config(lilod, lilod.sink().endpoint() + "\"]",
+                other.endpoint() + "\"]\n  frame_id: elsewhere");
+  ASSERT_TRUE(lilod.systemd().wait_for("RELOADING=1", seconds(2)));
+  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(2)));
+  EXPECT_TRUE(next_of_kind(other, "health")) << "the new sink";
+  EXPECT_EQ(lilod.stop(), 0);
+  const std::string log = lilod.process().standard_error();
+  EXPECT_NE(log.find("publish.sinks is now"), std::string::npos) << log;
+  EXPECT_NE(log.find("publish.frame_id: \"elsewhere\" needs a restart"), std::string::npos) << log;
+}
+
+TEST(Reload, ABadFileChangesNothing) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  change_config(lilod, "publish:", "publisch:");
+  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(2)));
+  while (lilod.sink().receive(milliseconds(0))) {
+  }
+  const json health = next_of_kind(lilod.sink(), "health").value_or(json());
+  ASSERT_FALSE(health.is_null()) << "the old sink is still in force";
+  EXPECT_NE(health["health"]["complaints"].dump().find("configuration file bad"),
+            std::string::npos);
+  change_config(lilod, "publisch:", "publish:");
+  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(2)));
+  EXPECT_EQ(lilod.stop(), 0);
+  EXPECT_NE(lilod.process().standard_error().find("did you mean publish?"), std::string::npos);
+}
+
+/// The thread of a process by its name.
+pid_t thread_named(pid_t process, const std::string& name) {
+  const std::string tasks = "/proc/" + std::to_string(process) + "/task";
+  for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+    std::string comm;
+    std::getline(std::ifstream(task.path() / "comm") >> std::ws, comm);
+    if (comm == name) return std::stoi(task.path().filename());
+  }
+  return -1;
+}
+
+// One thread is stopped as a debugger would: scans wait, and systemd hears no more.
+TEST(Watchdog, FiresWhenTheWorkerStalls) {
+  Lilod lilod("", {{"WATCHDOG_USEC", "400000"}});
+  ASSERT_TRUE(lilod.wait_ready());
+  Sensor sensor;
+  sensor.turn(lilod, 3.0);
+  ASSERT_TRUE(lilod.systemd().wait_for("WATCHDOG=1", seconds(1)));
+  const pid_t worker = thread_named(lilod.process().pid(), "lilo-worker");
+  if (ptrace(PTRACE_SEIZE, worker, nullptr, nullptr) != 0) GTEST_SKIP() << "ptrace is forbidden";
+  ptrace(PTRACE_INTERRUPT, worker, nullptr, nullptr);
+  waitpid(worker, nullptr, __WALL);
+  sensor.turn(lilod, 4.0);
+  while (lilod.systemd().wait_for("WATCHDOG=1", milliseconds(450))) {  // the looks under way
+  }
+  EXPECT_FALSE(lilod.systemd().wait_for("WATCHDOG=1", milliseconds(600)));
+  ptrace(PTRACE_DETACH, worker, nullptr, nullptr);
+  EXPECT_TRUE(lilod.systemd().wait_for("WATCHDOG=1", seconds(1))) << "it works again";
+}
+
+// Sensor off and on: the session goes on, and says so meanwhile.
+TEST(Sensor, UnpluggedAndReplugged) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  Sensor().turn(lilod, 3.0);
+  const json before = next_of_kind(lilod.sink(), "pose").value_or(json());
+  std::this_thread::sleep_for(milliseconds(1600));
+  while (lilod.sink().receive(milliseconds(0))) {
+  }
+  const json silent = next_of_kind(lilod.sink(), "health").value_or(json());
+  EXPECT_EQ(silent["health"]["complaints"][0], "sensor silent");
+  EXPECT_GT(silent["health"]["sensor_silent_s"], 1.0);
+  Sensor().turn(lilod, 3.0);  // its clock starts again
+  const json after = next_of_kind(lilod.sink(), "pose").value_or(json());
+  EXPECT_EQ(after["session"], before["session"]);
+  EXPECT_GT(after["seq"], before["seq"]);
+}
+
+// kill -9 and a new start: a client sees a new session.
+TEST(Session, ANewStartIsANewSession) {
+  std::string sessions[2];
+  for (std::string& session : sessions) {
+    Lilod lilod;
+    ASSERT_TRUE(lilod.wait_ready());
+    UdpSocket client;
+    session = ask(client, lilod, R"({"query":"hello"})", "hello")["session"];
+    lilod.process().signal(SIGKILL);
+    EXPECT_EQ(lilod.process().wait(seconds(2)), 128 + SIGKILL);
+  }
+  EXPECT_NE(sessions[0], sessions[1]);
+}
+
+// Garbage, oversized requests and ten thousand subscriptions: bounded answers, and poses go on.
+TEST(Hostile, ClientsCannotDisturbThePoses) {
+  Lilod lilod("  max_clients: 4\n");
+  ASSERT_TRUE(lilod.wait_ready());
+  UdpSocket attacker;
+  const std::string huge = R"({"subscribe":{},"x":")" + std::string(60000, 'x') + "\"}";
+  std::mt19937 rng(3);
+  for (int k = 0; k < 10'000; ++k) {
+    std::string garbage(static_cast<std::size_t>(rng() % 600), '\0');
+    for (char& c : garbage) c = static_cast<char>(rng());
+    attacker.send_to(lilod.server_port(), k % 100 == 0 ? huge : garbage);
+    attacker.send_to(lilod.server_port(), R"({"subscribe":{}})");
+  }
+  std::vector<std::unique_ptr<UdpSocket>> crowd;
+  for (int k = 0; k < 50; ++k) {
+    crowd.push_back(std::make_unique<UdpSocket>());
+    crowd.back()->send_to(lilod.server_port(), R"({"subscribe":{}})");
+  }
+  Sensor().turn(lilod, 5.0);
+  EXPECT_TRUE(next_of_kind(lilod.sink(), "pose"));
+  const json health = next_of_kind(lilod.sink(), "health").value_or(json());
+  EXPECT_LE(health["health"]["clients"], 4);
+  EXPECT_EQ(health["health"]["packets"]["lost"], 0);
+  int answers = 0;
+  while (attacker.receive(milliseconds(0))) ++answers;
+  EXPECT_LT(answers, 1000) << "20 000 requests in a moment";
+  EXPECT_EQ(lilod.stop(), 0) << lilod.process().standard_error();
+}
+
+}  // namespace
+}  // namespace lilo
