@@ -23,17 +23,22 @@ Lilod::Lilod(const std::string& more, const std::map<std::string, std::string>& 
     : data_port_(free_udp_port()),
       position_port_(free_udp_port()),
       server_port_(free_udp_port()),
-      config_path_(unique_path("lilod.yaml")) {
+      config_path_(unique_path("lilod.yaml")),
+      environment_(environment) {
   std::ofstream(config_path_) << "sensor:\n  model: auto\n"
                               << "udp:\n  bind_address: 127.0.0.1\n  data_port: " << data_port_
                               << "\n  position_port: " << position_port_ << '\n'
                               << "publish:\n  sinks: [\"" << sink_.endpoint() << "\"]\n"
                               << "subscribe:\n  port: " << server_port_ << '\n'
                               << more;
-  auto settings = environment;
-  settings["NOTIFY_SOCKET"] = systemd_.path();
+  environment_["NOTIFY_SOCKET"] = systemd_.path();
+  restart();
+}
+
+void Lilod::restart() {
+  process_.reset();
   process_ = std::make_unique<ChildProcess>(
-      std::vector<std::string>{LILO_BIN_DIR "/lilod", "--config", config_path_}, settings);
+      std::vector<std::string>{LILO_BIN_DIR "/lilod", "--config", config_path_}, environment_);
 }
 
 Lilod::~Lilod() { std::filesystem::remove(config_path_); }

@@ -4,6 +4,7 @@
 #include "tests/daemon/sockets.hpp"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -22,6 +23,8 @@ class Lilod {
 
   /// False when it did not say READY=1 in time; its log is then in the test's output.
   [[nodiscard]] bool wait_ready();
+  /// kill -9 and another start with the same ports.
+  void restart();
   /// SIGTERM; the exit code.
   int stop();
 
@@ -38,6 +41,7 @@ class Lilod {
   NotifySocket systemd_;
   std::uint16_t data_port_, position_port_, server_port_;
   std::string config_path_;
+  std::map<std::string, std::string> environment_;
   std::unique_ptr<ChildProcess> process_;
 };
 

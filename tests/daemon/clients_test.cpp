@@ -1,0 +1,153 @@
+#include "tests/daemon/conversation.hpp"
+#include "tools/clients/lilo_client.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <ifaddrs.h>
+#include <memory>
+
+/// The clients we give away, against the daemon itself.
+namespace lilo {
+namespace {
+
+const std::string kPython = "/usr/bin/python3";
+
+/// An address of this computer that is not loopback, or nothing.
+std::optional<std::string> outer_address() {
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return std::nullopt;
+  std::optional<std::string> out;
+  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
+    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+    const auto* address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
+    const std::string text = inet_ntoa(address->sin_addr);
+    if (!text.starts_with("127.")) out = text;
+  }
+  freeifaddrs(all);
+  return out;
+}
+
+/// Turns the sensor until the object goes.
+class Turning {
+ public:
+  explicit Turning(const Lilod& lilod)
+      : thread_([this, &lilod] {
+          Sensor sensor;
+          while (!stop_) sensor.turn(lilod, 0.5);
+        }) {}
+  ~Turning() {
+    stop_ = true;
+    thread_.join();
+  }
+  Turning(const Turning&) = delete;
+  Turning& operator=(const Turning&) = delete;
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+/// Runs an example that prints ten lines "seq status x y z".
+void expect_ten_poses(std::vector<std::string> command, const std::string& host,
+                      const Lilod& lilod) {
+  command.push_back(host);
+  command.push_back(std::to_string(lilod.server_port()));
+  const Finished run = run_to_end(command);
+  EXPECT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 10) << run.output << run.error;
+}
+
+TEST(Clients, ExamplesPrintPoses) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  const Turning turning(lilod);
+  expect_ten_poses({LILO_TESTS_DIR "/print_poses"}, "127.0.0.1", lilod);
+  if (std::filesystem::exists(kPython))
+    expect_ten_poses({kPython, LILO_CLIENTS_DIR "/print_poses.py"}, "127.0.0.1", lilod);
+}
+
+// From another address they have to be allowed, and echo the token.
+TEST(Clients, OtherAddressesEchoTheToken) {
+  const auto address = outer_address();
+  if (!address) GTEST_SKIP() << "this computer has no address but loopback";
+  Lilod lilod("  bind_address: 0.0.0.0\n  allow: [" + *address + "]\n");
+  ASSERT_TRUE(lilod.wait_ready());
+  const Turning turning(lilod);
+  expect_ten_poses({LILO_TESTS_DIR "/print_poses"}, *address, lilod);
+  if (std::filesystem::exists(kPython))
+    expect_ten_poses({kPython, LILO_CLIENTS_DIR "/print_poses.py"}, *address, lilod);
+}
+
+TEST(Clients, StrangersGetNoAnswer) {
+  const auto address = outer_address();
+  if (!address) GTEST_SKIP() << "this computer has no address but loopback";
+  Lilod lilod("  bind_address: 0.0.0.0\n");
+  ASSERT_TRUE(lilod.wait_ready());
+  const Turning turning(lilod);
+  Client client(*address, lilod.server_port());
+  ClientPose pose;
+  EXPECT_FALSE(client.next(pose, milliseconds(1500)));
+}
+
+// The client outlives the daemon: its poses go on, in another session.
+TEST(Clients, SeeANewSessionAfterARestart) {
+  auto lilod = std::make_unique<Lilod>();
+  ASSERT_TRUE(lilod->wait_ready());
+  Client client("127.0.0.1", lilod->server_port());
+  ClientPose pose;
+  {
+    const Turning turning(*lilod);
+    ASSERT_TRUE(client.next(pose));
+  }
+  const std::string before = pose.session;
+  lilod->restart();
+  ASSERT_TRUE(lilod->wait_ready());
+  const Turning turning(*lilod);
+  const auto deadline = std::chrono::steady_clock::now() + seconds(5);
+  while (pose.session == before && std::chrono::steady_clock::now() < deadline) client.next(pose);
+  EXPECT_NE(pose.session, before);
+}
+
+TEST(Clients, CppClientReadsEveryField) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  Client client("127.0.0.1", lilod.server_port());
+  ClientPose pose;
+  std::optional<json> raw;
+  {
+    const Turning turning(lilod);
+    ASSERT_TRUE(client.next(pose));
+    do raw = next_of_kind(lilod.sink(), "pose");
+    while (raw && (*raw)["seq"] != pose.seq);
+  }
+  ASSERT_TRUE(raw);
+  const json& m = (*raw)["pose"];
+  EXPECT_EQ(pose.session, (*raw)["session"]);
+  EXPECT_DOUBLE_EQ(pose.timestamp, (*raw)["timestamp"].get<double>());
+  EXPECT_EQ(pose.status, m["status"]);
+  EXPECT_EQ(pose.child_frame_id, m["child_frame_id"]);
+  EXPECT_DOUBLE_EQ(pose.position[2], m["position"]["z"].get<double>());
+  EXPECT_DOUBLE_EQ(pose.orientation[3], m["orientation"]["w"].get<double>());
+  EXPECT_EQ(pose.has_twist, m.contains("twist"));
+  EXPECT_EQ(pose.has_covariance, m.contains("covariance"));
+}
+
+TEST(FlatJson, AgreesWithAParserOnGoodAndBad) {
+  const std::string good = R"( {"a":{"b":[1,-2.5e3,{"c":"x\"y"}],"d":{}},"e":[],"f":true} )";
+  const FlatJson flat(good);
+  EXPECT_TRUE(flat.good());
+  EXPECT_EQ(flat.number("a/b/1"), -2500.0);
+  EXPECT_EQ(flat.text("a/b/2/c"), "x\"y");
+  EXPECT_EQ(flat.text("f"), "true");
+  EXPECT_FALSE(flat.has("e/0"));
+  for (std::size_t k = 0; k + 2 < good.size(); ++k) {
+    const std::string cut = good.substr(0, k);
+    EXPECT_FALSE(FlatJson(cut).good()) << cut;
+  }
+  const std::string deep(2000, '[');
+  EXPECT_FALSE(FlatJson(deep).good());
+}
+
+}  // namespace
+}  // namespace lilo
