@@ -49,6 +49,13 @@ inline float ccw_rad_from_ticks(double ticks) {
   return static_cast<float>(cw <= std::numbers::pi ? -cw : 2.0 * std::numbers::pi - cw);
 }
 
+/// Into [-pi, pi), from less than a turn outside.
+inline float wrap_rad(float rad) {
+  constexpr float kPi = std::numbers::pi_v<float>;
+  if (rad < -kPi) return rad + 2.0F * kPi;
+  return rad >= kPi ? rad - 2.0F * kPi : rad;
+}
+
 /// Cosine, sine and counter-clockwise angle of each of the 36000 azimuths a packet can name.
 class AzimuthTable {
  public:

@@ -123,7 +123,6 @@ double Hdl64eDecoder::packet_period_ns() const {
 
 void Hdl64eDecoder::project(const std::byte* block, std::size_t first_laser, std::int32_t t_ns,
                             ReturnKind kind, Bank& bank) const {
-  constexpr float kPi = std::numbers::pi_v<float>;
   const AzimuthTable::Entry& head = azimuths_[wire::u16(block + 2)];
   const std::byte* channel = block + wire::kBlockHeaderBytes;
   for (std::size_t k = 0; k < kBank; ++k, channel += wire::kChannelBytes) {
@@ -141,16 +140,15 @@ void Hdl64eDecoder::project(const std::byte* block, std::size_t first_laser, std
     const float intensity = std::clamp(static_cast<float>(wire::u8(channel + 2)) + focus,
                                        laser.min_intensity, laser.max_intensity);
     const float ccw = head.ccw_rad + laser.b_rad;
-    bank.returns[k] = {
-        .x_m = ahead + more_y * laser.cos_w * cos_a,
-        .y_m = -(side + more_x * laser.cos_w * sin_a),
-        .z_m = (d + 0.5F * (more_x + more_y)) * laser.sin_w + laser.vertical_m,
-        .azimuth_rad = ccw < -kPi ? ccw + 2.0F * kPi : (ccw >= kPi ? ccw - 2.0F * kPi : ccw),
-        .t_ns =
-            t_ns + static_cast<std::int32_t>(k / 4) * table_->group_ns + table_->laser_ns[k % 4],
-        .ring = laser.ring,
-        .intensity = static_cast<std::uint8_t>(intensity),
-        .kind = kind};
+    bank.returns[k] = {.x_m = ahead + more_y * laser.cos_w * cos_a,
+                       .y_m = -(side + more_x * laser.cos_w * sin_a),
+                       .z_m = (d + 0.5F * (more_x + more_y)) * laser.sin_w + laser.vertical_m,
+                       .azimuth_rad = wrap_rad(ccw),
+                       .t_ns = t_ns + static_cast<std::int32_t>(k / 4) * table_->group_ns +
+                               table_->laser_ns[k % 4],
+                       .ring = laser.ring,
+                       .intensity = static_cast<std::uint8_t>(intensity),
+                       .kind = kind};
     bank.steps[k] = static_cast<std::uint16_t>(steps);
     bank.in_range[k] = steps >= laser.min_steps && steps <= laser.max_steps;
   }

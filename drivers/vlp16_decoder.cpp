@@ -148,7 +148,6 @@ void Vlp16Decoder::project(const std::byte* block, int sequence, std::int32_t t_
   const AzimuthTable::Entry& base = azimuths_[wire::u16(block + 2)];
   const auto turn_offset = static_cast<std::size_t>(sequence) * kLasers;
   const std::byte* channel = block + wire::kBlockHeaderBytes + turn_offset * wire::kChannelBytes;
-  constexpr float kPi = std::numbers::pi_v<float>;
   for (std::size_t k = 0; k < kLasers; ++k, channel += wire::kChannelBytes) {
     const float turn_cos = turn_.cos[turn_offset + k], turn_sin = turn_.sin[turn_offset + k];
     const float cos_a = base.cos * turn_cos - base.sin * turn_sin;
@@ -160,7 +159,7 @@ void Vlp16Decoder::project(const std::byte* block, int sequence, std::int32_t t_
     returns[k] = {.x_m = horizontal * cos_a,
                   .y_m = -horizontal * sin_a,
                   .z_m = range * beam_[k].sin_elevation + beam_[k].origin_z_m,
-                  .azimuth_rad = ccw < -kPi ? ccw + 2.0F * kPi : ccw,
+                  .azimuth_rad = wrap_rad(ccw),
                   .t_ns = t_ns + static_cast<std::int32_t>(k) * kLaserNs,
                   .ring = ring_[k],
                   .intensity = wire::u8(channel + 2),
