@@ -25,6 +25,11 @@ class PacketSequence {
   /// `stamp_ns` on a time line without hour wraps, `received_ns` by the computer's clock.
   Verdict see(std::int64_t stamp_ns, std::int64_t received_ns, double period_ns);
 
+  /// Forgets what was before this packet.
+  void restart_at(std::int64_t stamp_ns, std::int64_t received_ns) {
+    start_over(stamp_ns, received_ns, Arrival::first);
+  }
+
   static constexpr std::size_t kMemory = 64;  ///< how many packets back a late one is recognised
 
  private:

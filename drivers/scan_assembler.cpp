@@ -24,7 +24,6 @@ ScanAssembler::ScanAssembler(const SensorConfig& config, Scan& target, ScanSink&
 
 void ScanAssembler::add(const PacketDecoder& decoder, std::int64_t line_ns,
                         PacketSequence::Verdict verdict, SensorClock& clock) {
-  if (verdict.arrival == PacketSequence::Arrival::restart) interrupt(clock);
   follow_direction(decoder.ticks_per_ns(), clock);
   if (verdict.lost > 0) spread_loss(verdict.lost, decoder.packet_period_ns(), line_ns);
   for (std::size_t i = 0; i < decoder.columns().size(); ++i) add_column(decoder, i, line_ns, clock);

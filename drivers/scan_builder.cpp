@@ -28,8 +28,8 @@ struct ScanBuilder::Impl {
   bool feed_position(const PacketView& packet);
   bool feed_vlp16(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
   bool feed_hdl64e(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
-  PacketSequence::Verdict sort(const PacketDecoder& decoder, std::int64_t line_ns,
-                               std::int64_t received_ns);
+  PacketSequence::Verdict sort(const PacketDecoder& decoder, std::uint32_t stamp_us,
+                               std::int64_t received_ns, std::int64_t& line_ns);
   void assemble(const PacketDecoder& decoder, std::int64_t line_ns,
                 PacketSequence::Verdict verdict);
 
@@ -137,23 +137,23 @@ bool ScanBuilder::Impl::feed_vlp16(DataPacket data, std::uint32_t stamp_us,
   // Old firmware names no product; then the configuration must.
   if (!known && model != SensorModel::vlp16) return false;
   if (!vlp16.load(data)) return false;
-  const std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
-  assemble(vlp16, line_ns, sort(vlp16, line_ns, received_ns));
+  std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
+  const auto verdict = sort(vlp16, stamp_us, received_ns, line_ns);
+  assemble(vlp16, line_ns, verdict);
   return true;
 }
 
 bool ScanBuilder::Impl::feed_hdl64e(DataPacket data, std::uint32_t stamp_us,
                                     std::int64_t received_ns) {
   using Arrival = PacketSequence::Arrival;
-  const std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
+  std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
   if (!hdl64e.load(data, line_ns)) return false;
   if (!hdl64e.times_known()) {
     ++counts.waiting_packets;
     return true;
   }
-  const auto verdict = sort(hdl64e.decoder(), line_ns, received_ns);
+  const auto verdict = sort(hdl64e.decoder(), stamp_us, received_ns, line_ns);
   if (verdict.arrival == Arrival::restart) {
-    assembler.interrupt(clock);
     hdl64e.restart();
     return true;
   }
@@ -168,8 +168,10 @@ bool ScanBuilder::Impl::feed_hdl64e(DataPacket data, std::uint32_t stamp_us,
   return true;
 }
 
-PacketSequence::Verdict ScanBuilder::Impl::sort(const PacketDecoder& decoder, std::int64_t line_ns,
-                                                std::int64_t received_ns) {
+// `line_ns` becomes another one where the sensor's clock jumped: the old line ends there.
+PacketSequence::Verdict ScanBuilder::Impl::sort(const PacketDecoder& decoder,
+                                                std::uint32_t stamp_us, std::int64_t received_ns,
+                                                std::int64_t& line_ns) {
   const auto verdict = sequence.see(line_ns, received_ns, decoder.packet_period_ns());
   switch (verdict.arrival) {
     case PacketSequence::Arrival::duplicate:
@@ -181,6 +183,10 @@ PacketSequence::Verdict ScanBuilder::Impl::sort(const PacketDecoder& decoder, st
       break;
     case PacketSequence::Arrival::restart:
       ++counts.sensor_restarts;
+      assembler.interrupt(clock);
+      clock.restart();
+      line_ns = clock.unwrap(stamp_us, received_ns);
+      sequence.restart_at(line_ns, received_ns);
       break;
     case PacketSequence::Arrival::first:
     case PacketSequence::Arrival::next:

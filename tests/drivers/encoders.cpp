@@ -210,7 +210,7 @@ std::vector<TimedPacket> hdl64e_packets(int count, const HdlOptions& o) {
       const int azimuth = ticks(azimuth_deg(o.drive, start_us + shot_us * (b * shots / 12)));
       bytes.block(b, b % 2 == 0 ? 0xEEFF : 0xDDFF, azimuth);
       const bool second_echo = dual && b % 4 >= 2;
-      for (int c = 0; c < 32; ++c) {
+      for (int c = 0; c < 32 && !o.without_returns; ++c) {
         const auto laser = static_cast<std::size_t>(b % 2 * 32 + c);
         const auto beam = hdl64e_beam(azimuth * 0.01 * kRadPerDeg, o.calibration.lasers[laser]);
         bytes.channel(b, c,

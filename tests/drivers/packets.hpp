@@ -66,6 +66,7 @@ struct HdlOptions {
   bool break_checksum = false;
   bool gps = true;         ///< status byte G is 'A'
   int start_in_cycle = 0;  ///< packets of the status lap that came before the first one
+  bool without_returns = false;
 };
 std::vector<TimedPacket> hdl64e_packets(int count, const HdlOptions& options);
 
