@@ -98,6 +98,14 @@ Mesh make_broadleaf_tree(Random& random) {
   return mesh;
 }
 
+Mesh make_street_tree(Random& random) {
+  Mesh mesh = make_broadleaf_tree(random);
+  std::erase_if(mesh, [](const Triangle& t) {
+    return t.material == Material::leaf && std::min({t.a.z(), t.b.z(), t.c.z()}) < 2.8F;
+  });
+  return mesh;
+}
+
 Mesh make_bare_tree(Random& random) {
   Mesh mesh;
   const Skeleton skeleton = add_skeleton(mesh, random);

@@ -8,6 +8,8 @@ namespace lilo::sim {
 
 /// Bent trunk, branches, and thousands of leaves; 5 to 13 m high.
 Mesh make_broadleaf_tree(Random& random);
+/// The same, pruned so that people and cars pass below: no leaves under 2.8 m.
+Mesh make_street_tree(Random& random);
 /// Straight trunk and drooping tiers; 5 to 14 m high.
 Mesh make_conifer(Random& random);
 /// The same skeleton as a broad-leaved tree, without leaves.

@@ -167,7 +167,8 @@ void add_furniture(World& world, Random& random, double side) {
 }
 
 void add_plants(World& world, Random& random) {
-  const ShapeSet trees(world.scene, random, 10, make_broadleaf_tree);
+  const ShapeSet pruned(world.scene, random, 10, make_street_tree);
+  const ShapeSet trees(world.scene, random, 8, make_broadleaf_tree);
   const ShapeSet bushes(world.scene, random, 6, make_bush);
   Planter planter(world.scene, world.route, random);
   for (const double side : {-1.0, 1.0}) {
@@ -176,7 +177,7 @@ void add_plants(World& world, Random& random) {
       const double yard = side * random.uniform(9.5, 14.0);
       if (random.chance(0.4)) planter.stand(bushes, arc + 5.0, yard, random.angle());
       const double kerb = side * random.uniform(4.9, 5.6);
-      if (random.chance(0.5)) planter.stand(trees, arc, kerb, random.angle());
+      if (random.chance(0.5)) planter.stand(pruned, arc, kerb, random.angle());
     }
   }
   planter.scatter(trees, world.route.extent(60.0), 0.003, 14.0);
