@@ -6,6 +6,7 @@
 #include "tools/sim/vehicles.hpp"
 #include "tools/sim/world.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -103,9 +104,12 @@ void add_gap(World& world, Random& random, double arc, double side, double lengt
 /// Houses along one side, with alleys, gardens and set-backs between them.
 void add_houses(World& world, Random& random, double side) {
   for (double arc = world.route.begin_m(); arc < world.route.end_m();) {
-    if (random.chance(0.2)) {
-      const double gap = random.uniform(2.0, 11.0);
-      if (gap > 3.0) add_gap(world, random, arc, side, gap);
+    if (random.chance(0.25)) {  // an alley or a garden, now and then a square
+      const double gap =
+          random.chance(0.25) ? random.uniform(18.0, 45.0) : random.uniform(2.0, 12.0);
+      for (double x = 0.0; x + 3.0 < gap; x += 12.0) {
+        if (random.chance(0.7)) add_gap(world, random, arc + x, side, std::min(gap - x, 11.0));
+      }
       arc += gap;
       continue;
     }
