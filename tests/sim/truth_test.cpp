@@ -10,6 +10,7 @@
 #include <iterator>
 #include <sstream>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 namespace lilo::sim {
@@ -30,11 +31,16 @@ std::vector<std::vector<double>> numbers(const std::filesystem::path& path) {
   return rows;
 }
 
+/// A folder of this process: ctest runs every test in one of its own, at the same time.
+std::filesystem::path own_folder(const std::string& name) {
+  return std::filesystem::path(testing::TempDir()) / (name + std::to_string(getpid()));
+}
+
 /// A short drive, made once for all tests of this file.
 class Truth : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = std::filesystem::path(testing::TempDir()) / "lilo_sim_truth";
+    folder_ = own_folder("lilo_sim_truth_");
     simulate(options(), folder_.string(), [](double) {});
   }
   static void TearDownTestSuite() { std::filesystem::remove_all(folder_); }
@@ -48,7 +54,7 @@ class Truth : public testing::Test {
 };
 
 TEST_F(Truth, SameOptionsGiveSameBytesAndAnotherSeedDoesNot) {
-  const auto again = std::filesystem::path(testing::TempDir()) / "lilo_sim_again";
+  const auto again = own_folder("lilo_sim_again_");
   simulate(options(), again.string(), [](double) {});
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
