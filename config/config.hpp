@@ -38,7 +38,7 @@ struct RealtimeConfig {
   int worker_cpu = -1;       ///< pin the worker here; -1: do not pin
   int worker_priority = 0;   ///< SCHED_FIFO priority; 0: the normal policy
   bool lock_memory = false;  ///< mlockall
-  int ring_slots = 4;        ///< scans the ring can hold
+  int ring_slots = 8;        ///< scans the ring can hold
 };
 
 struct Config {

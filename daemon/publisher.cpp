@@ -17,7 +17,7 @@ Publisher::Publisher(boost::asio::io_context& io, const Config& config, Engine& 
       server_(io, config.subscribe, config.publish,
               {.last_pose = [this] { return last_pose_; },
                .health = [this] { return write_health_now(); },
-               .reset = [this](std::optional<Pose> start) { return reset(start); },
+               .reset = [this](const std::optional<Pose>& start) { return reset(start); },
                .session = [this]() -> const std::string& { return message_.session; }}) {
   sinks_.set(config.publish.sinks);
 }
@@ -52,7 +52,7 @@ void Publisher::send_pose(const PoseReport& report) {
   monitor_.add(report, static_cast<double>(now_ns - report.last_packet_ns) * 1e-6);
 }
 
-bool Publisher::reset(std::optional<Pose> start_pose) {
+bool Publisher::reset(const std::optional<Pose>& start_pose) {
   if (!engine_.reset()) return false;
   next_start_ = start_pose;
   return true;

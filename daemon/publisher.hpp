@@ -37,7 +37,7 @@ class Publisher {
  private:
   void send_pose(const PoseReport& report);
   void begin_session(std::uint64_t resets);
-  bool reset(std::optional<Pose> start_pose);
+  bool reset(const std::optional<Pose>& start_pose);
   void broadcast(std::string_view datagram);
   std::string_view write_health_now();
   [[nodiscard]] PublisherCounts counts() const;

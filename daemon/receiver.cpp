@@ -112,9 +112,9 @@ Scan& Receiver::exchange(Scan&) {
 }
 
 void prepare_slot(ScanSlot& slot, SensorModel model) {
-  // Dual returns at 10 Hz: VLP-16 754 packets x 12 blocks x 32 channels / 10; HDL-64E S3 four times
-  // that and more. A slower head outgrows it in its first turns, never again.
-  constexpr std::size_t kVlp16Returns = 64'000, kHdl64eReturns = 270'000;
+  // One return a firing at 10 Hz: 28 928 and 133 333. What dual returns or a slower head need more,
+  // a slot takes in its first turn and keeps.
+  constexpr std::size_t kVlp16Returns = 32'000, kHdl64eReturns = 140'000;
   slot.scan.returns.resize(model == SensorModel::vlp16 ? kVlp16Returns : kHdl64eReturns);
   slot.scan.clear();
 }

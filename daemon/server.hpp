@@ -20,9 +20,9 @@ namespace lilo {
 
 /// What the server asks of the daemon. Datagrams live until the next call.
 struct ServerActions {
-  std::function<std::string_view()> last_pose;     ///< empty: none yet
-  std::function<std::string_view()> health;        ///< as of now
-  std::function<bool(std::optional<Pose>)> reset;  ///< false: one is under way
+  std::function<std::string_view()> last_pose;            ///< empty: none yet
+  std::function<std::string_view()> health;               ///< as of now
+  std::function<bool(const std::optional<Pose>&)> reset;  ///< false: one is under way
   std::function<const std::string&()> session;
 };
 

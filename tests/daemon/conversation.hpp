@@ -19,10 +19,10 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// The next datagram that has `kind`, within two seconds. All that come are held against the
+/// The next datagram that has `kind`, within ten seconds. All that come are held against the
 /// schema.
 inline std::optional<json> next_of_kind(UdpSocket& socket, const std::string& kind) {
-  const auto deadline = std::chrono::steady_clock::now() + seconds(2);
+  const auto deadline = std::chrono::steady_clock::now() + seconds(10);
   while (std::chrono::steady_clock::now() < deadline) {
     const auto datagram = socket.receive(milliseconds(100));
     if (!datagram) continue;
@@ -40,7 +40,7 @@ inline json ask(UdpSocket& client, const Lilod& lilod, const std::string& reques
   return next_of_kind(client, kind).value_or(json());
 }
 
-/// A VLP-16 in a round room, ten times as fast as life. Its clock goes on from turn to turn.
+/// A VLP-16 in a round room, three times as fast as life. Its clock goes on from turn to turn.
 class Sensor {
  public:
   void turn(const Lilod& lilod, double turns) {
@@ -49,7 +49,7 @@ class Sensor {
       source_.read(packet, milliseconds(0));
       const auto* bytes = reinterpret_cast<const char*>(packet.payload.data());
       socket_.send_to(lilod.data_port(), std::string(bytes, packet.payload.size()));
-      std::this_thread::sleep_for(std::chrono::microseconds(130));
+      std::this_thread::sleep_for(std::chrono::microseconds(400));
     }
   }
 

@@ -19,13 +19,14 @@ std::string unique_path(const std::string& name) {
 
 }  // namespace
 
-Lilod::Lilod(const std::string& more, const std::map<std::string, std::string>& environment)
+Lilod::Lilod(const std::string& more, const std::map<std::string, std::string>& environment,
+             const std::string& sensor)
     : data_port_(free_udp_port()),
       position_port_(free_udp_port()),
       server_port_(free_udp_port()),
       config_path_(unique_path("lilod.yaml")),
       environment_(environment) {
-  std::ofstream(config_path_) << "sensor:\n  model: auto\n"
+  std::ofstream(config_path_) << "sensor:\n  " << sensor << '\n'
                               << "udp:\n  bind_address: 127.0.0.1\n  data_port: " << data_port_
                               << "\n  position_port: " << position_port_ << '\n'
                               << "publish:\n  sinks: [\"" << sink_.endpoint() << "\"]\n"

@@ -16,7 +16,8 @@ class Lilod {
   /// `more`: YAML put behind the sections the fixture writes (sensor, udp, publish, subscribe), so
   /// it may hold any other. `environment` is added to ours.
   explicit Lilod(const std::string& more = "",
-                 const std::map<std::string, std::string>& environment = {});
+                 const std::map<std::string, std::string>& environment = {},
+                 const std::string& sensor = "model: auto");
   ~Lilod();
   Lilod(const Lilod&) = delete;
   Lilod& operator=(const Lilod&) = delete;

@@ -61,7 +61,8 @@ class Validator {
       for (const json& name : rule) require(value.contains(name), path, "no " + name.dump());
     } else if (keyword == "properties") {
       for (const auto& [name, sub] : rule.items()) {
-        if (value.contains(name)) check(sub, value[name], path + '/' + name);
+        if (value.contains(name))
+          check(sub, value[name], std::string(path).append("/").append(name));
       }
     } else if (keyword == "additionalProperties") {
       for (const auto& [name, ignored] : value.items())

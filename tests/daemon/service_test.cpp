@@ -30,8 +30,8 @@ TEST(Reload, TakesWhatCanChangeAndNamesTheRest) {
   UdpSocket other;
   change_config(lilod, lilod.sink().endpoint() + "\"]",
                 other.endpoint() + "\"]\n  frame_id: elsewhere");
-  ASSERT_TRUE(lilod.systemd().wait_for("RELOADING=1", seconds(2)));
-  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(2)));
+  ASSERT_TRUE(lilod.systemd().wait_for("RELOADING=1", seconds(10)));
+  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
   EXPECT_TRUE(next_of_kind(other, "health")) << "the new sink";
   EXPECT_EQ(lilod.stop(), 0);
   const std::string log = lilod.process().standard_error();
@@ -43,7 +43,7 @@ TEST(Reload, ABadFileChangesNothing) {
   Lilod lilod;
   ASSERT_TRUE(lilod.wait_ready());
   change_config(lilod, "publish:", "publisch:");
-  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(2)));
+  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
   while (lilod.sink().receive(milliseconds(0))) {
   }
   const json health = next_of_kind(lilod.sink(), "health").value_or(json());
@@ -51,7 +51,7 @@ TEST(Reload, ABadFileChangesNothing) {
   EXPECT_NE(health["health"]["complaints"].dump().find("configuration file bad"),
             std::string::npos);
   change_config(lilod, "publisch:", "publish:");
-  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(2)));
+  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
   EXPECT_EQ(lilod.stop(), 0);
   EXPECT_NE(lilod.process().standard_error().find("did you mean publish?"), std::string::npos);
 }
@@ -73,7 +73,7 @@ TEST(Watchdog, FiresWhenTheWorkerStalls) {
   ASSERT_TRUE(lilod.wait_ready());
   Sensor sensor;
   sensor.turn(lilod, 3.0);
-  ASSERT_TRUE(lilod.systemd().wait_for("WATCHDOG=1", seconds(1)));
+  ASSERT_TRUE(lilod.systemd().wait_for("WATCHDOG=1", seconds(10)));
   const pid_t worker = thread_named(lilod.process().pid(), "lilo-worker");
   if (ptrace(PTRACE_SEIZE, worker, nullptr, nullptr) != 0) GTEST_SKIP() << "ptrace is forbidden";
   ptrace(PTRACE_INTERRUPT, worker, nullptr, nullptr);
@@ -83,7 +83,7 @@ TEST(Watchdog, FiresWhenTheWorkerStalls) {
   }
   EXPECT_FALSE(lilod.systemd().wait_for("WATCHDOG=1", milliseconds(600)));
   ptrace(PTRACE_DETACH, worker, nullptr, nullptr);
-  EXPECT_TRUE(lilod.systemd().wait_for("WATCHDOG=1", seconds(1))) << "it works again";
+  EXPECT_TRUE(lilod.systemd().wait_for("WATCHDOG=1", seconds(10))) << "it works again";
 }
 
 // Sensor off and on: the session goes on, and says so meanwhile.

@@ -1,0 +1,88 @@
+#include "daemon/pose_message.hpp"
+#include "daemon/receiver.hpp"
+#include "daemon/sinks.hpp"
+#include "tests/daemon/vlp16_packets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+/// Every allocation of this program is counted, on whatever thread.
+namespace {
+std::atomic<std::uint64_t> allocations{0};
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace lilo {
+namespace {
+
+TEST(Allocation, IsCounted) {
+  const std::uint64_t before = allocations;
+  const std::vector<int> v(100);
+  EXPECT_GT(allocations, before);
+  EXPECT_EQ(v.size(), 100U);
+}
+
+/// A sensor whose scans are taken as soon as they are there; notes the count at the given packet.
+class TakenSource : public PacketSource {
+ public:
+  TakenSource(std::uint64_t packets, std::uint64_t warm_at, ScanRing& scans)
+      : source_(packets), warm_at_(warm_at), scans_(scans) {}
+  ReadResult read(PacketView& packet, std::chrono::milliseconds timeout) override {
+    while (scans_.front() != nullptr) scans_.release();
+    if (++read_ == warm_at_) allocations_when_warm = allocations;
+    return source_.read(packet, timeout);
+  }
+  [[nodiscard]] SourceCounts counts() const override { return source_.counts(); }
+
+  std::uint64_t allocations_when_warm = 0;
+
+ private:
+  RoundRoomSource source_;
+  std::uint64_t warm_at_, read_ = 0;
+  ScanRing& scans_;
+};
+
+// Packets to scans in the ring: nothing after every slot has been written once.
+TEST(Allocation, ReceiverHasNoneOnceWarm) {
+  ScanRing scans(4);
+  scans.for_each_slot([](ScanSlot& slot) { prepare_slot(slot, SensorModel::vlp16); });
+  Wakeup ready(Wakeup::Mode::blocking);
+  PipelineCounters counters;
+  auto owned = std::make_unique<TakenSource>(4000, 800, scans);
+  const TakenSource& source = *owned;
+  Receiver receiver(std::move(owned), {.model = SensorModel::vlp16}, scans, ready, counters);
+  receiver.run();
+  EXPECT_GT(counters.scans_received, 45U);
+  EXPECT_EQ(allocations - source.allocations_when_warm, 0U);
+}
+
+// A pose to two sinks, covariance and all.
+TEST(Allocation, PublishingAPoseHasNone) {
+  boost::asio::io_context io;
+  Sinks sinks(io);
+  sinks.set({"127.0.0.1:9", "127.0.0.1:10"});
+  const PoseMessageContext context{"0123456789abcdef", "odom", "velodyne"};
+  PoseReport report;
+  report.estimate.status = TrackingStatus::tracking;
+  report.estimate.has_covariance = true;
+  JsonWriter json;
+  const std::uint64_t before = allocations;
+  for (int k = 0; k < 100; ++k) {
+    report.estimate.T_odom_sensor.translation_m.x() = 0.1 * k;
+    sinks.send(write_pose(context, report, 1'000'000, json));
+  }
+  EXPECT_EQ(allocations - before, 0U);
+}
+
+}  // namespace
+}  // namespace lilo
