@@ -17,9 +17,12 @@ float half_area(const Box& box) {
   return d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
 }
 
+constexpr float kHuge = 3e38F;
+
 struct Split {
   int axis = -1;
   float position = 0.0F;
+  float cost = kHuge;
 };
 
 }  // namespace
@@ -29,46 +32,44 @@ struct Bvh::Build {
   std::vector<Eigen::Vector3f> centres;
   Bvh& bvh;
 
+  /// The cheapest of kBins - 1 splits along one axis, if it is cheaper than `best`.
+  void try_axis(int axis, const Box& spread, std::uint32_t first, std::uint32_t count,
+                Split& best) const {
+    const float width = spread.high[axis] - spread.low[axis];
+    if (!(width > 0.0F)) return;
+    std::array<Box, kBins> bin_box;
+    std::array<int, kBins> bin_count{};
+    const float scale = static_cast<float>(kBins) / width;
+    for (std::uint32_t k = first; k < first + count; ++k) {
+      const std::uint32_t item = bvh.order_[k];
+      const auto bin = static_cast<int>((centres[item][axis] - spread.low[axis]) * scale);
+      const auto b = static_cast<std::size_t>(std::min(kBins - 1, bin));
+      bin_box[b].grow(boxes[item]);
+      ++bin_count[b];
+    }
+    std::array<float, kBins> right_cost{};
+    Box right, left;
+    int right_count = 0, left_count = 0;
+    for (std::size_t b = kBins - 1; b > 0; --b) {
+      right.grow(bin_box[b]);
+      right_count += bin_count[b];
+      right_cost[b] = right_count > 0 ? half_area(right) * static_cast<float>(right_count) : kHuge;
+    }
+    for (std::size_t b = 0; b + 1 < kBins; ++b) {
+      left.grow(bin_box[b]);
+      left_count += bin_count[b];
+      if (left_count == 0) continue;
+      const float cost = half_area(left) * static_cast<float>(left_count) + right_cost[b + 1];
+      if (cost >= best.cost) continue;
+      best = {axis, spread.low[axis] + static_cast<float>(b + 1) / scale, cost};
+    }
+  }
+
   [[nodiscard]] Split best_split(std::uint32_t first, std::uint32_t count) const {
     Box spread;
     for (std::uint32_t k = first; k < first + count; ++k) spread.grow(centres[bvh.order_[k]]);
     Split best;
-    float best_cost = 3e38F;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float width = spread.high[axis] - spread.low[axis];
-      if (!(width > 0.0F)) continue;
-      std::array<Box, kBins> bin_box;
-      std::array<int, kBins> bin_count{};
-      const float scale = static_cast<float>(kBins) / width;
-      for (std::uint32_t k = first; k < first + count; ++k) {
-        const std::uint32_t item = bvh.order_[k];
-        const int b =
-            std::min(kBins - 1, static_cast<int>((centres[item][axis] - spread.low[axis]) * scale));
-        bin_box[static_cast<std::size_t>(b)].grow(boxes[item]);
-        ++bin_count[static_cast<std::size_t>(b)];
-      }
-      std::array<float, kBins> right_cost{};
-      Box right;
-      int right_count = 0;
-      for (std::size_t b = kBins - 1; b > 0; --b) {
-        right.grow(bin_box[b]);
-        right_count += bin_count[b];
-        right_cost[b] =
-            right_count > 0 ? half_area(right) * static_cast<float>(right_count) : 3e38F;
-      }
-      Box left;
-      int left_count = 0;
-      for (std::size_t b = 0; b + 1 < kBins; ++b) {
-        left.grow(bin_box[b]);
-        left_count += bin_count[b];
-        if (left_count == 0) continue;
-        const float cost = half_area(left) * static_cast<float>(left_count) + right_cost[b + 1];
-        if (cost < best_cost) {
-          best_cost = cost;
-          best = {axis, spread.low[axis] + static_cast<float>(b + 1) / scale};
-        }
-      }
-    }
+    for (int axis = 0; axis < 3; ++axis) try_axis(axis, spread, first, count, best);
     return best;
   }
 
