@@ -5,6 +5,7 @@
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 
+#include <algorithm>
 #include <bitset>
 #include <cmath>
 #include <numbers>
@@ -66,7 +67,24 @@ void read_intensities(const ptree& db, const char* list, int LaserCorrection::*l
   }
 }
 
+// The parser calls itself for each element within an element: a file of nothing but opening tags
+// would exhaust the stack. db.xml goes six deep.
+bool nests_too_deep(const std::string& text) {
+  constexpr int kMaxDepth = 32;
+  int depth = 0;
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+    const char next = text[i + 1];
+    if (text[i] == '<' && next != '!' && next != '?')
+      depth = std::max(0, depth + (next == '/' ? -1 : 1));
+    if (text[i] == '/' && next == '>') depth = std::max(0, depth - 1);
+    if (depth > kMaxDepth) return true;
+  }
+  return false;
+}
+
 ptree parse(const std::string& name, const std::string& text) {
+  if (nests_too_deep(text))
+    throw DriverError(name + ": expected a calibration in XML, found elements without end");
   std::istringstream in(text);
   ptree root;
   try {

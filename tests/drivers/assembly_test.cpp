@@ -32,7 +32,7 @@ void expect_no_ghosts(const Outcome& out) {
     for (const Return& r : scan.returns) {
       ASSERT_GE(r.t_ns, before_ns);
       before_ns = r.t_ns;
-      ASSERT_LT(Room::distance_to_surface_m(r.x_m, r.y_m, r.z_m), 0.002);
+      ASSERT_LT(Room::distance_to_surface_m(r), 0.002);
       // Azimuth and time of a firing belong together: a return of another turn would not fit.
       const double swept_deg = static_cast<double>(r.t_ns) * 3600e-9;
       const double azimuth_deg = -static_cast<double>(r.azimuth_rad) / kDeg;

@@ -53,9 +53,9 @@ TEST(SensorClock, HostAndSensorOnEitherSideOfTheHour) {
 }
 
 TEST(SensorClock, AFreeRunningSensorIsPlacedByReceiveTime) {
-  for (const int minutes : {-40, -20, 7, 20, 40}) {
+  for (const std::int64_t minutes : {-40, -20, 7, 20, 40}) {
     SensorClock clock;
-    const std::int64_t received = kHour + 50 * 60 * kSecondNs + minutes * 60 * kSecondNs;
+    const std::int64_t received = kHour + (50 + minutes) * 60 * kSecondNs;
     const std::int64_t line = clock.unwrap(600'000'000, received);
     clock.begin_scan(line);
     EXPECT_EQ(clock.to_utc_ns(line), received) << minutes;
@@ -193,14 +193,14 @@ TEST(PositionPacket, NeedsPulseAndFix) {
 
 TEST(ScanTimes, CrossTheHourUnbroken) {
   const auto packets = test::vlp16_packets(
-      320, {.start_past_hour_s = 3599.8, .start_received_ns = kHour - kSecondNs / 5});
+      320, {.start_past_hour_s = 3599.8, .start_received_ns = kHour - 200'000'000});
   const Outcome out = build(packets);
   EXPECT_EQ(out.counts.packets_lost, 0U);
   EXPECT_EQ(out.counts.sensor_restarts, 0U);
   ASSERT_EQ(out.scans.size(), 4U);
   for (std::size_t i = 1; i < out.scans.size(); ++i)
     EXPECT_NEAR(static_cast<double>(out.scans[i].start_ns - out.scans[i - 1].start_ns), 1e8, 6e4);
-  EXPECT_NEAR(static_cast<double>(out.scans[0].start_ns - (kHour - kSecondNs / 5)), 5.5e6, 1e5);
+  EXPECT_NEAR(static_cast<double>(out.scans[0].start_ns - (kHour - 200'000'000)), 5.5e6, 1e5);
 }
 
 TEST(ScanTimes, SayWhichClockIsInForce) {

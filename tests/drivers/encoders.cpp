@@ -179,11 +179,13 @@ std::vector<TimedPacket> vlp16_packets(int count, const DriveOptions& o, std::ui
     PacketBytes bytes;
     const double start_us = n * 55.296 * 24 / stride;
     for (int b = 0; b < 12; b += stride) {
-      const double block_us = start_us + 110.592 * (b / stride);
+      const int shot = b / stride;
+      const double block_us = start_us + 110.592 * shot;
       for (int pair = 0; pair < stride; ++pair)
         bytes.block(b + pair, 0xEEFF, ticks(azimuth_deg(o, block_us)));
       for (int c = 0; c < 32; ++c) {
-        const double t_us = block_us + 55.296 * (c / 16) + 2.304 * (c % 16);
+        const int sequence = c / 16;
+        const double t_us = block_us + 55.296 * sequence + 2.304 * (c % 16);
         const auto beam = vlp16_beam(azimuth_deg(o, t_us) * kRadPerDeg,
                                      elevation_deg[static_cast<std::size_t>(c % 16)] * kRadPerDeg);
         bytes.channel(b, c, steps_to(beam, Room::beyond), 10);
@@ -207,11 +209,12 @@ std::vector<TimedPacket> hdl64e_packets(int count, const HdlOptions& o) {
     PacketBytes bytes;
     const double start_us = n * shot_us * shots;
     for (int b = 0; b < 12; ++b) {
-      const int azimuth = ticks(azimuth_deg(o.drive, start_us + shot_us * (b * shots / 12)));
+      const int shot = b * shots / 12;
+      const int azimuth = ticks(azimuth_deg(o.drive, start_us + shot_us * shot));
       bytes.block(b, b % 2 == 0 ? 0xEEFF : 0xDDFF, azimuth);
       const bool second_echo = dual && b % 4 >= 2;
       for (int c = 0; c < 32 && !o.without_returns; ++c) {
-        const auto laser = static_cast<std::size_t>(b % 2 * 32 + c);
+        const std::size_t laser = (b % 2 == 0 ? 0U : 32U) + static_cast<std::size_t>(c);
         const auto beam = hdl64e_beam(azimuth * 0.01 * kRadPerDeg, o.calibration.lasers[laser]);
         bytes.channel(b, c,
                       steps_to(beam, dual && !second_echo ? Room::beyond_glass : Room::beyond), 50);

@@ -25,8 +25,7 @@ constexpr double kStepM = 0.002;
 double worst_distance_m(const std::vector<Scan>& scans) {
   double worst = 0.0;
   for (const Scan& scan : scans)
-    for (const Return& p : scan.returns)
-      worst = std::max(worst, Room::distance_to_surface_m(p.x_m, p.y_m, p.z_m));
+    for (const Return& p : scan.returns) worst = std::max(worst, Room::distance_to_surface_m(p));
   return worst;
 }
 
@@ -94,11 +93,11 @@ TEST(Vlp16Dual, BothEchoesAreKeptAndEqualOnesOnce) {
   for (const Return& p : out.scans[0].returns) {
     if (p.kind == ReturnKind::strongest) {
       ++glass;
-      EXPECT_LT(Room::distance_to_glass_m(p.x_m), kStepM);
+      EXPECT_LT(Room::distance_to_glass_m(p), kStepM);
     } else {
       wall += p.kind == ReturnKind::last ? 1U : 0U;
       both += p.kind == ReturnKind::both ? 1U : 0U;
-      EXPECT_LT(Room::distance_to_surface_m(p.x_m, p.y_m, p.z_m), kStepM);
+      EXPECT_LT(Room::distance_to_surface_m(p), kStepM);
     }
   }
   EXPECT_GT(glass, 1000U);
@@ -128,7 +127,7 @@ TEST(Vlp16, RangeLimitsLeaveOutWhatIsBeyond) {
   ASSERT_GE(out.scans.size(), 1U);
   ASSERT_GT(out.scans[0].returns.size(), 1000U);
   for (const Return& p : out.scans[0].returns) {
-    const double range_m = std::hypot(p.x_m, p.y_m, p.z_m);
+    const auto range_m = static_cast<double>(std::hypot(p.x_m, p.y_m, p.z_m));
     EXPECT_GT(range_m, 3.0 - 0.013);  // the origin is up to 12 mm off
     EXPECT_LT(range_m, 5.5 + 0.013);
   }
@@ -196,9 +195,9 @@ TEST(Hdl64eDual, BothEchoesAreKeptAndEqualOnesOnce) {
     glass += p.kind == ReturnKind::strongest ? 1U : 0U;
     wall += p.kind == ReturnKind::last ? 1U : 0U;
     if (p.kind == ReturnKind::strongest)
-      EXPECT_LT(Room::distance_to_glass_m(p.x_m), kStepM);
+      EXPECT_LT(Room::distance_to_glass_m(p), kStepM);
     else
-      EXPECT_LT(Room::distance_to_surface_m(p.x_m, p.y_m, p.z_m), kStepM);
+      EXPECT_LT(Room::distance_to_surface_m(p), kStepM);
   }
   EXPECT_GT(glass, 1000U);
   EXPECT_EQ(glass, wall);

@@ -37,9 +37,14 @@ void PacketBytes::tail(std::uint8_t type, std::uint8_t value) {
   bytes_[1205] = std::byte{value};
 }
 
-double Room::distance_to_surface_m(double x, double y, double z) {
+double Room::distance_to_surface_m(const Return& p) {
+  const auto x = static_cast<double>(p.x_m), y = static_cast<double>(p.y_m);
+  const auto z = static_cast<double>(p.z_m);
   return std::min({std::abs(std::abs(x) - 6.0), std::abs(std::abs(y) - 5.0), std::abs(z + 1.5),
                    std::abs(z - 2.5)});
+}
+double Room::distance_to_glass_m(const Return& p) {
+  return std::abs(static_cast<double>(p.x_m) - 3.0);
 }
 bool Room::beyond(double x, double y, double z) {
   return std::abs(x) > 6.0 || std::abs(y) > 5.0 || z < -1.5 || z > 2.5;

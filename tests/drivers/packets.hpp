@@ -37,8 +37,8 @@ class PacketBytes {
 /// A room of 12 x 10 x 4 m, the sensor 1.5 m above its floor, and a pane of glass at x = 3 m.
 struct Room {
   /// How far p is from the nearest wall, floor or ceiling; 0 on them.
-  static double distance_to_surface_m(double x, double y, double z);
-  static double distance_to_glass_m(double x) { return x > 3.0 ? x - 3.0 : 3.0 - x; }
+  static double distance_to_surface_m(const Return& p);
+  static double distance_to_glass_m(const Return& p);
   /// Outside of the room.
   static bool beyond(double x, double y, double z);
   static bool beyond_glass(double x, double y, double z) { return x > 3.0 || beyond(x, y, z); }

@@ -106,10 +106,12 @@ TEST(RealVlp16Capture, PointsLieWhereAzimuthAndRingSay) {
     ASSERT_EQ(scan.beams.ring_count, 16);
     for (const Return& p : scan.returns) {
       ASSERT_LT(p.ring, 16);
-      EXPECT_NEAR(std::remainder(std::atan2(p.y_m, p.x_m) - p.azimuth_rad, 2 * M_PI), 0.0, 1e-4);
-      const double w = scan.beams.elevation_rad[p.ring];
+      const auto x = static_cast<double>(p.x_m), y = static_cast<double>(p.y_m);
+      const auto azimuth_rad = static_cast<double>(p.azimuth_rad);
+      EXPECT_NEAR(std::remainder(std::atan2(y, x) - azimuth_rad, 2 * M_PI), 0.0, 1e-4);
+      const auto w = static_cast<double>(scan.beams.elevation_rad[p.ring]);
       const double origin_m = 0.04191 * std::tan(-w);
-      const double horizontal = std::hypot(p.x_m, p.y_m);
+      const double horizontal = std::hypot(x, y);
       EXPECT_NEAR(p.z_m, horizontal * std::tan(w) + origin_m, 1e-4 + 1e-6 * horizontal);
     }
   }
