@@ -33,6 +33,25 @@ TEST(PoseMessage, LineShowsTimeOfDayAndAngles) {
   }
 }
 
+TEST(PoseMessage, LineNeverShowsMinusZero) {
+  PoseMessage message;
+  message.pose.pose.translation_m = {-1e-5, -0.0, -4e-4};
+  EXPECT_EQ(pose_line(message).find('-'), std::string::npos) << pose_line(message);
+}
+
+TEST(PoseMessage, HealthIsOneShortLineAndTheUnknownIsShownAsItIs) {
+  const std::string line = other_line(
+      R"({"timestamp":1.0,"health":{"status":"tracking","complaints":["sensor hot"],"rate_hz":10,)"
+      R"("packets":{"received":754,"lost":3},"scans":{"dropped":2},)"
+      R"("latency_ms":{"p50":6.04,"p99":9.96,"max":20}}})");
+  for (const char* part : {"tracking", "10 Hz", "754 packets", "3 lost", "2 scans dropped",
+                           "6.0 ms", "p99 10.0 ms", "sensor hot"}) {
+    EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
+  }
+  EXPECT_EQ(other_line(R"({"hello":1})"), "{\"hello\":1}\n");
+  EXPECT_EQ(other_line(R"({"health":{}})"), "{\"health\":{}}\n");
+}
+
 TEST(PoseMessage, OtherObjectsAreNotPosesAndRubbishIsNoMessage) {
   PoseMessage message;
   EXPECT_EQ(parse_message(R"({"timestamp":1.0,"health":{}})", message), MessageKind::other);

@@ -43,8 +43,10 @@ class Listener {
     const MessageKind kind = parse_message(datagram, message);
     malformed_ += kind == MessageKind::malformed ? 1 : 0;
     if (kind == MessageKind::pose) take_pose(message);
-    if (options_.json || kind == MessageKind::other) {
+    if (options_.json) {
       fmt::print("{}\n", datagram);
+    } else if (kind == MessageKind::other) {
+      fmt::print("{}", other_line(datagram));
     } else if (kind == MessageKind::pose) {
       if (poses_ == 1) fmt::print("{}", pose_heading());
       fmt::print("{}", pose_line(message));

@@ -43,6 +43,26 @@ Eigen::Vector3d roll_pitch_yaw_deg(const Eigen::Quaterniond& rotation) {
   return rad * (180.0 / std::numbers::pi);
 }
 
+/// To three decimals, and never "-0.000".
+double shown(double value) { return std::round(value * 1e3) / 1e3 + 0.0; }
+
+std::string health_line(const json& object) {
+  const json& health = object.at("health");
+  const json& packets = health.at("packets");
+  const json& latency_ms = health.at("latency_ms");
+  std::string line = fmt::format(
+      "         health           {:<12}  {:g} Hz, {} packets, {} lost, {} scans dropped, latency "
+      "{:.1f} ms, p99 {:.1f} ms",
+      health.at("status").get<std::string>(), health.at("rate_hz").get<double>(),
+      packets.at("received").get<std::uint64_t>(), packets.at("lost").get<std::uint64_t>(),
+      health.at("scans").at("dropped").get<std::uint64_t>(), latency_ms.at("p50").get<double>(),
+      latency_ms.at("p99").get<double>());
+  for (const json& complaint : health.at("complaints")) {
+    line += ", " + complaint.get<std::string>();
+  }
+  return line + "\n";
+}
+
 }  // namespace
 
 MessageKind parse_message(std::string_view datagram, PoseMessage& message) {
@@ -71,8 +91,16 @@ std::string pose_line(const PoseMessage& message) {
   gmtime_r(&seconds, &utc);
   return fmt::format(
       "{:%H:%M:%S}.{:06d}  {:8d}  {:<12}  {:9.3f}  {:9.3f}  {:9.3f}   {:9.3f}  {:9.3f}  {:9.3f}\n",
-      utc, stamp_ns % kSecond / 1000, message.seq, message.status, t.x(), t.y(), t.z(), angles.x(),
-      angles.y(), angles.z());
+      utc, stamp_ns % kSecond / 1000, message.seq, message.status, shown(t.x()), shown(t.y()),
+      shown(t.z()), shown(angles.x()), shown(angles.y()), shown(angles.z()));
+}
+
+std::string other_line(std::string_view datagram) {
+  try {
+    return health_line(json::parse(datagram));
+  } catch (const json::exception&) {
+    return std::string(datagram) + "\n";
+  }
 }
 
 }  // namespace lilo

@@ -28,4 +28,7 @@ std::string pose_heading();
 /// One aligned line: time of day (UTC), seq, status, position, roll pitch yaw in degrees.
 std::string pose_line(const PoseMessage& message);
 
+/// One line for any other datagram: the gist of a health report, the datagram itself else.
+std::string other_line(std::string_view datagram);
+
 }  // namespace lilo
