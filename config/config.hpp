@@ -38,6 +38,7 @@ struct RealtimeConfig {
   int worker_cpu = -1;       ///< pin the worker here; -1: do not pin
   int worker_priority = 0;   ///< SCHED_FIFO priority; 0: the normal policy
   bool lock_memory = false;  ///< mlockall
+  int reserve_mb = 32;       ///< heap held beforehand when memory is locked
   int ring_slots = 8;        ///< scans the ring can hold
 };
 

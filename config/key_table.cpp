@@ -161,6 +161,8 @@ std::vector<Key> realtime_keys() {
               "policy. Below 50 stays below the kernel's interrupt threads."),
       boolean("realtime.lock_memory", LILO_MEMBER(realtime.lock_memory), kRestart,
               "Locks all memory (mlockall), so that no page fault delays a pose."),
+      integer("realtime.reserve_mb", LILO_MEMBER(realtime.reserve_mb), 0, 4096, "", kRestart,
+              "With lock_memory: memory held beforehand for the map to grow into (MiB)."),
       integer("realtime.ring_slots", LILO_MEMBER(realtime.ring_slots), 3, 64, "scans", kRestart,
               "Scans that may wait for the odometry thread. When all are taken, the oldest are "
               "dropped and counted."),

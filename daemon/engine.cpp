@@ -65,7 +65,8 @@ RealtimeReport Engine::start() {
     if (refusal) report.refusals.push_back(*refusal);
   };
   note(limit_stack_of_new_threads(kThreadStackBytes));
-  if (realtime_.lock_memory) note(lock_all_memory());
+  if (realtime_.lock_memory)
+    note(lock_all_memory(static_cast<std::size_t>(realtime_.reserve_mb) << 20U));
 
   const int priority = realtime_.worker_priority;
   std::future<ThreadStart> worker, receiver;

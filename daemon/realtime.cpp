@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <fstream>
 #include <malloc.h>
 #include <pthread.h>
@@ -65,11 +66,20 @@ std::optional<std::string> use_fifo_in_this_thread(int priority) {
                      priority, reason(error));
 }
 
-std::optional<std::string> lock_all_memory() {
-  // Memory that went back to the kernel would fault when it is asked for again.
+std::optional<std::string> lock_all_memory(std::size_t reserve_bytes) {
+  // Memory that went back to the kernel would fault when it is asked for again. One heap for all
+  // threads, because a thread's own grows by page faults even when the future is locked; and in
+  // large steps, because the kernel fills each step as a whole.
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
-  if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return std::nullopt;
+  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_TOP_PAD, 8 << 20);
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {
+    // Locked and given back to malloc, which keeps it: the heap grows here and not at work.
+    void* volatile reserve = std::malloc(reserve_bytes);  // volatile: or the pair is optimised away
+    std::free(reserve);
+    return std::nullopt;
+  }
   return fmt::format("cannot lock memory: {} (LimitMEMLOCK= or CAP_IPC_LOCK)", reason(errno));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <sys/types.h>
@@ -24,8 +25,9 @@ struct RealtimeReport {
 /// Each of these returns why the system refused, in one line for the log, or nothing.
 std::optional<std::string> pin_this_thread(int cpu);
 std::optional<std::string> use_fifo_in_this_thread(int priority);
-/// Locks what is and what will be mapped, and keeps malloc from giving memory back.
-std::optional<std::string> lock_all_memory();
+/// Locks what is and what will be mapped, keeps malloc from giving memory back, and has it hold
+/// `reserve_bytes` more than it needs now. Call it before there are other threads.
+std::optional<std::string> lock_all_memory(std::size_t reserve_bytes);
 std::optional<std::string> limit_stack_of_new_threads(std::size_t bytes);
 
 ThreadPolicy policy_of_this_thread();
