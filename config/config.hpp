@@ -11,11 +11,19 @@
 
 namespace lilo {
 
+/// Where the sensor sits on the robot: its position in the base frame, and the rotation that turns
+/// sensor axes into base axes, as roll, pitch and yaw about the fixed base axes (REP-103).
+struct MountConfig {
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;
+  double roll_rad = 0.0, pitch_rad = 0.0, yaw_rad = 0.0;
+};
+
 /// Where poses go.
 struct PublishConfig {
   std::vector<std::string> sinks;           ///< "host:port", one datagram a pose to each
   std::string frame_id = "odom";            ///< parent frame, REP-105
   std::string child_frame_id = "velodyne";  ///< the frame whose pose is published
+  MountConfig T_base_sensor;                ///< identity: the pose of the sensor is published
 };
 
 /// Who may ask for poses.

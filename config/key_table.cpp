@@ -125,6 +125,26 @@ std::vector<Key> publish_keys() {
   };
 }
 
+std::vector<Key> mount_keys() {
+  const auto metres = [](const char* name, auto member, const char* meaning) {
+    return real(name, member, -100.0, 100.0, "m", kRestart, meaning);
+  };
+  const auto degrees = [](const char* name, auto member, const char* meaning) {
+    return angle(name, member, -180.0, 180.0, kRestart, meaning);
+  };
+  return {
+      metres("publish.T_base_sensor.x_m", LILO_MEMBER(publish.T_base_sensor.x_m), "Forward."),
+      metres("publish.T_base_sensor.y_m", LILO_MEMBER(publish.T_base_sensor.y_m), "To the left."),
+      metres("publish.T_base_sensor.z_m", LILO_MEMBER(publish.T_base_sensor.z_m), "Up."),
+      degrees("publish.T_base_sensor.roll_deg", LILO_MEMBER(publish.T_base_sensor.roll_rad),
+              "Turned about x first."),
+      degrees("publish.T_base_sensor.pitch_deg", LILO_MEMBER(publish.T_base_sensor.pitch_rad),
+              "Then about y of the robot; positive looks down."),
+      degrees("publish.T_base_sensor.yaw_deg", LILO_MEMBER(publish.T_base_sensor.yaw_rad),
+              "Then about z of the robot; positive looks to the left."),
+  };
+}
+
 std::vector<Key> subscribe_keys() {
   return {
       text("subscribe.bind_address", LILO_MEMBER(subscribe.bind_address), kAddress, kRestart,
@@ -178,6 +198,10 @@ std::vector<Section> config_sections() {
       {"odometry", "How scans become poses."},
       {"odometry.paper", "The choices of profile paper."},
       {"publish", "Where poses go."},
+      {"publish.T_base_sensor",
+       "Where the sensor sits on the robot. All zero: the pose is the sensor's own. Otherwise it "
+       "is "
+       "the base frame's; name that in child_frame_id."},
       {"subscribe", "Who may ask for poses."},
       {"health", "What lilod says of itself."},
       {"realtime", "Real-time measures. One that the system refuses is a warning, not an error."},
@@ -186,7 +210,7 @@ std::vector<Section> config_sections() {
 
 std::vector<Key> config_keys() {
   std::vector<Key> keys;
-  for (auto section : {sensor_keys, udp_keys, odometry_keys, paper_keys, publish_keys,
+  for (auto section : {sensor_keys, udp_keys, odometry_keys, paper_keys, publish_keys, mount_keys,
                        subscribe_keys, health_keys, realtime_keys}) {
     for (Key& key : section()) keys.push_back(std::move(key));
   }

@@ -64,7 +64,8 @@ std::string print_config(const Config& config) {
   for (const Section& section : config_sections()) {
     const std::string outer = margin_of(section.path);
     if (!out.empty() && outer.empty()) out += '\n';
-    out += fmt::format("{}# {}\n{}{}:\n", outer, section.meaning, outer, last_name(section.path));
+    out += wrapped(section.meaning, outer + '#');
+    out += fmt::format("{}{}:\n", outer, last_name(section.path));
     for (const Key& key : config_keys()) {
       if (!in_section(key, section)) continue;
       const std::string margin = margin_of(key.path);

@@ -1,5 +1,6 @@
 #include "daemon/publisher.hpp"
 
+#include "daemon/base_frame.hpp"
 #include "daemon/clock.hpp"
 #include "daemon/metrics_file.hpp"
 
@@ -13,6 +14,8 @@ Publisher::Publisher(boost::asio::io_context& io, const Config& config, Engine& 
       engine_(engine),
       monitor_(monitor),
       message_{new_session(), config.publish.frame_id, config.publish.child_frame_id},
+      T_base_sensor_(to_pose(config.publish.T_base_sensor)),
+      mounted_(!is_identity(config.publish.T_base_sensor)),
       sinks_(io),
       server_(io, config.subscribe, config.publish,
               {.last_pose = [this] { return last_pose_; },
@@ -39,6 +42,7 @@ void Publisher::send_poses() {
 void Publisher::send_pose(const PoseReport& report) {
   if (report.resets != resets_) begin_session(report.resets);
   PoseReport placed = report;
+  if (mounted_) placed.estimate = in_base_frame(report.estimate, T_base_sensor_);
   Pose& pose = placed.estimate.T_odom_sensor;
   if (resets_ > 0) pose = T_odom_start_ * pose;
   const std::int64_t now_ns = monotonic_ns();

@@ -46,8 +46,10 @@ class Publisher {
   Engine& engine_;
   HealthMonitor& monitor_;
   PoseMessageContext message_;
+  Pose T_base_sensor_;
+  bool mounted_ = false;  // T_base_sensor is not the identity
   std::uint64_t resets_ = 0;
-  Pose T_odom_start_;  // where the odometry's own first pose is
+  Pose T_odom_start_;  // where the first pose of the session is
   std::optional<Pose> next_start_;
   JsonWriter pose_json_, health_json_;
   std::string_view last_pose_;
