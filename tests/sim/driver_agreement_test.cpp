@@ -104,7 +104,7 @@ TEST_P(DriverAgreement, DecodedReturnsLieOnTheSurfaces) {
   for (const Scan& scan : scans) {
     for (const Return& r : scan.returns) {
       const double time_s = static_cast<double>(scan.start_ns + r.t_ns - kUtc) * 1e-9;
-      const Vec3 local(r.x_m, r.y_m, r.z_m);
+      const Vec3 local = Eigen::Vector3f(r.x_m, r.y_m, r.z_m).cast<double>();
       if (local.norm() > 15.0) continue;
       const Vec3 p = rig.path.at(time_s) * local;
       errors.push_back(std::min({std::abs(p.z()), std::abs(p.y() - 7.0), std::abs(p.y() + 9.0)}));

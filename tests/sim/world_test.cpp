@@ -29,7 +29,8 @@ double nearest_around(const Scene& scene, const Placement& pose, double time_s) 
 
 // A drive that leads through a tree or a car would make a set no odometry can be blamed for.
 TEST_P(Worlds, DriveIsClearAndOnTheGround) {
-  const auto& [name, seed] = GetParam();
+  const std::string& name = std::get<0>(GetParam());
+  const std::uint64_t seed = std::get<1>(GetParam());
   const auto info = std::find_if(known_worlds().begin(), known_worlds().end(),
                                  [&](const WorldInfo& w) { return w.name == name; });
   ASSERT_NE(info, known_worlds().end());
