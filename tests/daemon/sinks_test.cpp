@@ -2,6 +2,7 @@
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/address_v4.hpp>
+#include <boost/asio/ip/multicast.hpp>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -38,6 +39,23 @@ TEST(Sinks, EverySinkGetsTheWholeDatagram) {
     EXPECT_EQ(std::string(bytes.data(), size), "hello");
   }
   EXPECT_EQ(sinks.send_errors(), 0U);
+}
+
+// A group on the loopback card: whoever joined gets it.
+TEST(Sinks, MulticastGroupsAreSinks) {
+  asio::io_context io;
+  udp::socket member(io, udp::v4());
+  member.bind(udp::endpoint(asio::ip::address_v4::any(), 0));
+  boost::system::error_code error;
+  member.set_option(asio::ip::multicast::join_group(asio::ip::make_address_v4("239.255.98.70")),
+                    error);
+  if (error) GTEST_SKIP() << "no multicast here: " << error.message();
+  Sinks sinks(io);
+  sinks.set({"239.255.98.70:" + std::to_string(member.local_endpoint().port())});
+  sinks.send("to all");
+  ASSERT_EQ(sinks.send_errors(), 0U);
+  std::array<char, 100> bytes{};
+  EXPECT_EQ(member.receive(asio::buffer(bytes)), 6U);
 }
 
 TEST(Sinks, RefusedSendsAreCounted) {
