@@ -35,8 +35,11 @@ const FiringTable* find_firing_table(double packet_period_ns, bool dual) {
   return nullptr;
 }
 
-Hdl64eDecoder::Hdl64eDecoder(const SensorConfig& config)
-    : min_range_m_(config.min_range_m), max_range_m_(config.max_range_m), choice_(config.returns) {}
+Hdl64eDecoder::Hdl64eDecoder(const SensorConfig& config, const AzimuthTable& azimuths)
+    : azimuths_(azimuths),
+      min_range_m_(config.min_range_m),
+      max_range_m_(config.max_range_m),
+      choice_(config.returns) {}
 
 void Hdl64eDecoder::use_calibration(const Hdl64eCalibration& calibration) {
   constexpr std::size_t kLasers = Hdl64eCalibration::kLasers;

@@ -33,7 +33,8 @@ const FiringTable* find_firing_table(double packet_period_ns, bool dual);
 /// d_m is their mean, since the manual's choice of d_y alone bends z with the azimuth.
 class Hdl64eDecoder final : public PacketDecoder {
  public:
-  explicit Hdl64eDecoder(const SensorConfig& config);
+  /// `azimuths` must outlive the decoder.
+  Hdl64eDecoder(const SensorConfig& config, const AzimuthTable& azimuths);
 
   void use_calibration(const Hdl64eCalibration& calibration);
   /// The table append() works with; none before use_table().
@@ -74,7 +75,7 @@ class Hdl64eDecoder final : public PacketDecoder {
   void append_single(int pair, std::int32_t t_ns, std::vector<Return>& out) const;
   void append_dual(int shot, std::int32_t t_ns, std::vector<Return>& out) const;
 
-  AzimuthTable azimuths_;
+  const AzimuthTable& azimuths_;
   double min_range_m_, max_range_m_;
   ReturnChoice choice_;
   float step_m_ = wire::kMetresPerStep;

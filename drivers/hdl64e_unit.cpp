@@ -11,7 +11,8 @@ constexpr std::int32_t kS3ShotNs = 57600;
 
 }  // namespace
 
-Hdl64eUnit::Hdl64eUnit(const SensorConfig& config) : decoder_(config) {
+Hdl64eUnit::Hdl64eUnit(const SensorConfig& config, const AzimuthTable& azimuths)
+    : decoder_(config, azimuths) {
   if (!config.state_directory.empty())
     stored_file_ = config.state_directory + "/hdl64e_calibration.yaml";
   if (!config.calibration_file.empty()) {

@@ -18,7 +18,7 @@ class Hdl64eUnit {
  public:
   /// Throws DriverError when the configured calibration file cannot be used; a stored one that
   /// cannot is as good as none.
-  explicit Hdl64eUnit(const SensorConfig& config);
+  Hdl64eUnit(const SensorConfig& config, const AzimuthTable& azimuths);
 
   /// False: no HDL-64E packet.
   bool load(DataPacket packet, std::int64_t line_ns);

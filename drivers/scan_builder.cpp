@@ -20,7 +20,10 @@ constexpr std::int64_t kReplaceableNs = 2'000'000'000;
 
 struct ScanBuilder::Impl {
   Impl(const SensorConfig& config, Scan& target, ScanSink& sink)
-      : model(config.model), vlp16(config), hdl64e(config), assembler(config, target, sink) {}
+      : model(config.model),
+        vlp16(config, azimuths),
+        hdl64e(config, azimuths),
+        assembler(config, target, sink) {}
 
   void feed(const PacketView& packet);
   bool is_followed(const PacketView& packet);
@@ -35,6 +38,7 @@ struct ScanBuilder::Impl {
 
   SensorModel model;
   SensorModel seen_model = SensorModel::automatic;
+  AzimuthTable azimuths;
   Vlp16Decoder vlp16;
   Hdl64eUnit hdl64e;
   SensorClock clock;

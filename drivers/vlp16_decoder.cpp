@@ -25,8 +25,9 @@ int blocks_per_shot(ReturnMode mode) { return mode == ReturnMode::dual ? 2 : 1; 
 
 }  // namespace
 
-Vlp16Decoder::Vlp16Decoder(const SensorConfig& config)
-    : min_steps_(std::max(1, static_cast<int>(std::ceil(config.min_range_m / 0.002)))),
+Vlp16Decoder::Vlp16Decoder(const SensorConfig& config, const AzimuthTable& azimuths)
+    : azimuths_(azimuths),
+      min_steps_(std::max(1, static_cast<int>(std::ceil(config.min_range_m / 0.002)))),
       max_steps_(static_cast<int>(std::min(65535.0, config.max_range_m / 0.002))),
       choice_(config.returns) {
   set_product(kProductVlp16);

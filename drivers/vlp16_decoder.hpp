@@ -18,7 +18,8 @@ namespace lilo {
 ///   x = r cos w cos a,  y = -r cos w sin a,  z = r sin w + z0,  z0 = 41.91 mm tan(-w).
 class Vlp16Decoder final : public PacketDecoder {
  public:
-  explicit Vlp16Decoder(const SensorConfig& config);
+  /// `azimuths` must outlive the decoder.
+  Vlp16Decoder(const SensorConfig& config, const AzimuthTable& azimuths);
 
   bool load(DataPacket packet) override;
   [[nodiscard]] std::span<const Column> columns() const override {
@@ -61,7 +62,7 @@ class Vlp16Decoder final : public PacketDecoder {
                   const std::array<Return, kLasers>& other,
                   const std::array<Echo, kLasers>& other_echo, std::vector<Return>& out) const;
 
-  AzimuthTable azimuths_;
+  const AzimuthTable& azimuths_;
   std::array<Beam, kLasers> beam_{};
   std::array<std::uint8_t, kLasers> ring_{};
   BeamTable beams_;
