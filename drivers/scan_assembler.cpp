@@ -10,7 +10,10 @@ namespace {
 
 constexpr double kTurn = wire::kTicksPerTurn;
 constexpr double kBackwardTicks = 1000.0;  // encoder noise and late columns, not a whole turn less
-constexpr int kAgainstPackets = 20;        // before a change of direction is believed
+// The last firings of an HDL-64E's packet are 2.3 us before the next one's first: a stamp that
+// wavers by more must not put them out of order.
+constexpr std::int64_t kStampJitterNs = 20'000;
+constexpr int kAgainstPackets = 20;  // before a change of direction is believed
 // The slowest head turns at 5 Hz. One that has not come round after this is standing still.
 constexpr std::int64_t kMaxScanNs = 500'000'000;
 
@@ -37,11 +40,14 @@ bool ScanAssembler::add_late(const PacketDecoder& decoder, std::int64_t line_ns)
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::int64_t column_ns = line_ns + columns[i].first_ns;
     if (column_ns < scan_start_ns_) continue;
-    used = true;
     auto& returns = scan_->returns;
     const auto t_ns = static_cast<std::int32_t>(column_ns - scan_start_ns_);
     const auto place = std::upper_bound(returns.begin(), returns.end(), t_ns,
                                         [](std::int32_t t, const Return& r) { return t < r.t_ns; });
+    // Wrong stamps only: a firing among those of another column would break the order.
+    const std::int32_t last_t_ns = t_ns + columns[i].last_ns - columns[i].first_ns;
+    if (place != returns.end() && place->t_ns < last_t_ns) continue;
+    used = true;
     const auto place_index = place - returns.begin();
     const auto old_size = static_cast<std::ptrdiff_t>(returns.size());
     decoder.append(i, t_ns, returns);
@@ -102,7 +108,11 @@ double ScanAssembler::sweep_to(double phase, std::int64_t column_ns, double tick
 void ScanAssembler::add_column(const PacketDecoder& decoder, std::size_t column,
                                std::int64_t line_ns, SensorClock& clock) {
   const Column& c = decoder.columns()[column];
-  const std::int64_t column_ns = line_ns + c.first_ns;
+  std::int64_t column_ns = line_ns + c.first_ns;
+  if (has_column_ && column_ns <= last_firing_ns_) {
+    if (column_ns < last_firing_ns_ - kStampJitterNs) return;  // nearer than packets can be
+    column_ns = last_firing_ns_ + 1;
+  }
   const double phase = phase_of(c.azimuth_ticks);
   if (has_column_) {
     const double sweep = sweep_to(phase, column_ns, decoder.ticks_per_ns());
@@ -117,6 +127,7 @@ void ScanAssembler::add_column(const PacketDecoder& decoder, std::size_t column,
     has_column_ = true;
   }
   column_ns_ = column_ns;
+  last_firing_ns_ = column_ns + c.last_ns - c.first_ns;
   if (!in_scan_) return;
   if (column_ns - scan_start_ns_ > kMaxScanNs) {
     ++stalls_;
@@ -124,7 +135,7 @@ void ScanAssembler::add_column(const PacketDecoder& decoder, std::size_t column,
     return;
   }
   coverage_.mark(phase);
-  scan_end_ns_ = line_ns + c.last_ns;
+  scan_end_ns_ = last_firing_ns_;
   decoder.append(column, static_cast<std::int32_t>(column_ns - scan_start_ns_), scan_->returns);
 }
 

@@ -52,9 +52,10 @@ class ScanAssembler {
 
   int direction_ = 1;        // +1: azimuth grows (clockwise)
   int against_ = 0;          // packets in a row that turned the other way
-  bool has_column_ = false;  // the two below hold the column before
+  bool has_column_ = false;  // what is below holds of the column before
   double phase_ = 0.0;
   std::int64_t column_ns_ = 0;
+  std::int64_t last_firing_ns_ = 0;
 
   bool in_scan_ = false;
   std::int64_t scan_start_ns_ = 0;  // on the sensor's line

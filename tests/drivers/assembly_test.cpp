@@ -169,6 +169,25 @@ TEST(Assembly, PacketsSwappedAcrossTheCutAddNothingToTheNextScan) {
   expect_no_ghosts(out);
 }
 
+// Found by fuzzing: stamps nearer to each other than packets can be.
+TEST(Assembly, WaveringStampsKeepTheOrderOfFirings) {
+  auto packets = four_turns();
+  for (std::size_t i = 100; i < 110; ++i) {
+    const std::uint32_t us = 1'000'132'710 + static_cast<std::uint32_t>(i - 100) * 700;
+    for (std::size_t k = 0; k < 4; ++k)
+      packets[i].bytes[1200 + k] = static_cast<std::byte>(us >> (8 * k) & 0xFFU);
+  }
+  for (std::size_t i = 200; i < 220; i += 2)
+    packets[i].bytes[1200] =
+        static_cast<std::byte>(std::to_integer<int>(packets[i].bytes[1200]) & 0xF0);
+  const Outcome out = build(packets);
+  EXPECT_EQ(out.counts.sensor_restarts, 0U);
+  ASSERT_EQ(out.scans.size(), 4U);
+  for (const Scan& scan : out.scans)
+    EXPECT_TRUE(std::is_sorted(scan.returns.begin(), scan.returns.end(),
+                               [](const Return& a, const Return& b) { return a.t_ns < b.t_ns; }));
+}
+
 TEST(Assembly, ARestartedSensorEndsTheScan) {
   auto packets = vlp16_packets(120, {});
   const auto again = vlp16_packets(200, {.start_azimuth_deg = 100,
