@@ -64,12 +64,54 @@ std::vector<Key> udp_keys() {
 
 std::vector<Key> odometry_keys() {
   return {
-      choice("odometry.profile", LILO_MEMBER(odometry.profile), {"paper"}, kRestart,
-             "Which odometry runs; paper: the method of the LiLO paper."),
+      choice(
+          "odometry.profile", LILO_MEMBER(odometry.profile), {"default", "paper"}, kRestart,
+          "Which odometry runs; default: the fast and accurate one; paper: the method of the LiLO "
+          "paper, for comparison."),
       real("odometry.min_range_m", LILO_MEMBER(odometry.min_range_m), 0.0, 20.0, "m", kRestart,
            "Nearer returns are not used for odometry."),
       real("odometry.max_range_m", LILO_MEMBER(odometry.max_range_m), 5.0, 300.0, "m", kRestart,
            "Farther returns are not used for odometry."),
+  };
+}
+
+std::vector<Key> default_profile_keys() {
+  return {
+      integer("odometry.default.columns", LILO_MEMBER(odometry.standard.columns), 90, 4096, "",
+              kRestart, "Width of the range image."),
+      integer(
+          "odometry.default.ground_features", LILO_MEMBER(odometry.standard.ground_features), 50,
+          20000, "", kRestart,
+          "Ground points a scan is aligned by, about so many. More is more accurate and slower."),
+      integer("odometry.default.structure_features",
+              LILO_MEMBER(odometry.standard.structure_features), 50, 20000, "", kRestart,
+              "The same for everything that stands."),
+      integer("odometry.default.map_features", LILO_MEMBER(odometry.standard.map_features), 500,
+              200000, "", kRestart, "Points a keyframe adds to the map, at most."),
+      integer(
+          "odometry.default.map_cells", LILO_MEMBER(odometry.standard.map_cells), 10000, 2000000,
+          "", kRestart,
+          "Cells of ground, and as many of structure, the map can hold: this bounds the memory."),
+      real("odometry.default.map_radius_m", LILO_MEMBER(odometry.standard.map_radius_m), 20.0,
+           300.0, "m", kRestart, "Farther parts of the map are forgotten."),
+      real("odometry.default.cell_m", LILO_MEMBER(odometry.standard.cell_m), 0.1, 2.0, "m",
+           kRestart,
+           "Size of a map cell; a surface is fitted over three of them. Smaller indoors."),
+      real("odometry.default.keyframe_m", LILO_MEMBER(odometry.standard.keyframe_m), 0.01, 10.0,
+           "m", kRestart, "The map grows when the sensor has moved so far since it last grew."),
+      angle("odometry.default.keyframe_deg", LILO_MEMBER(odometry.standard.keyframe_rad), 0.1, 45.0,
+            kRestart, "The same for turning."),
+      real("odometry.default.noise_m", LILO_MEMBER(odometry.standard.noise_m), 0.001, 0.2, "m",
+           kRestart, "Range noise of the sensor, 1 sigma."),
+      real("odometry.default.roll_pitch_density", LILO_MEMBER(odometry.standard.roll_pitch_density),
+           0.0001, 100.0, "", kRestart,
+           "How fast roll and pitch rates may change: power density of the angular acceleration "
+           "(rad2/s3). Larger on stiff or legged robots."),
+      real("odometry.default.yaw_density", LILO_MEMBER(odometry.standard.yaw_density), 0.0001,
+           100.0, "", kRestart, "The same for the yaw rate (rad2/s3)."),
+      real("odometry.default.translation_density",
+           LILO_MEMBER(odometry.standard.translation_density), 0.001, 1000.0, "", kRestart,
+           "The same for the velocity (m2/s3)."),
   };
 }
 
@@ -196,6 +238,7 @@ std::vector<Section> config_sections() {
       {"sensor", "How packets become scans."},
       {"udp", "Where packets come from."},
       {"odometry", "How scans become poses."},
+      {"odometry.default", "The choices of profile default."},
       {"odometry.paper", "The choices of profile paper."},
       {"publish", "Where poses go."},
       {"publish.T_base_sensor",
@@ -210,8 +253,8 @@ std::vector<Section> config_sections() {
 
 std::vector<Key> config_keys() {
   std::vector<Key> keys;
-  for (auto section : {sensor_keys, udp_keys, odometry_keys, paper_keys, publish_keys, mount_keys,
-                       subscribe_keys, health_keys, realtime_keys}) {
+  for (auto section : {sensor_keys, udp_keys, odometry_keys, default_profile_keys, paper_keys,
+                       publish_keys, mount_keys, subscribe_keys, health_keys, realtime_keys}) {
     for (Key& key : section()) keys.push_back(std::move(key));
   }
   return keys;

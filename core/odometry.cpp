@@ -1,6 +1,9 @@
 #include "core/odometry.hpp"
 
 #include "core/paper/paper_odometry.hpp"
+#include "core/standard/tracker.hpp"
+
+#include <variant>
 
 namespace lilo {
 
@@ -23,16 +26,18 @@ const char* to_string(Stage stage) {
 }
 
 struct Odometry::Impl {
-  paper::PaperOdometry paper;
+  std::variant<standard::Tracker, paper::PaperOdometry> profile;
 };
 
 Odometry::Odometry(const OdometryConfig& config)
-    : impl_(std::make_unique<Impl>(Impl{paper::PaperOdometry(config)})) {}
+    : impl_(config.profile == Profile::paper
+                ? std::make_unique<Impl>(Impl{paper::PaperOdometry(config)})
+                : std::make_unique<Impl>(Impl{standard::Tracker(config)})) {}
 
 Odometry::~Odometry() = default;
 
 Estimate Odometry::process(const Scan& scan, StageHook hook) {
-  return impl_->paper.process(scan, hook);
+  return std::visit([&](auto& profile) { return profile.process(scan, hook); }, impl_->profile);
 }
 
 }  // namespace lilo

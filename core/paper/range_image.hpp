@@ -26,11 +26,11 @@ struct RangeImage {
 
   [[nodiscard]] int rows() const { return range_m.rows; }
   [[nodiscard]] int columns() const { return range_m.cols; }
-  [[nodiscard]] const Pixel& at(int row, int column) const {
-    return pixels[static_cast<std::size_t>(row * range_m.cols + column)];
-  }
-  [[nodiscard]] Pixel& at(int row, int column) {
-    return pixels[static_cast<std::size_t>(row * range_m.cols + column)];
+  [[nodiscard]] const Pixel& at(int row, int column) const { return pixels[index_of(row, column)]; }
+  [[nodiscard]] Pixel& at(int row, int column) { return pixels[index_of(row, column)]; }
+  [[nodiscard]] std::size_t index_of(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(range_m.cols) +
+           static_cast<std::size_t>(column);
   }
 };
 

@@ -1,0 +1,199 @@
+#include "core/standard/cell_map.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace lilo::standard {
+namespace {
+
+constexpr float kMinCount = 6.0F;     // points a window needs
+constexpr float kFewPoints_m = 0.1F;  // 1 sigma of what one point says of the surface around it
+// A direction informs if its spread (1 sigma) stays under this part of the window's width; an even
+// filling has 0.29.
+constexpr float kThin = 0.065F;
+constexpr std::size_t kSweepShare = 64;
+
+Symmetric outer(const Eigen::Vector3f& v) {
+  Symmetric o;
+  o << v.x() * v.x(), v.x() * v.y(), v.x() * v.z(), v.y() * v.y(), v.y() * v.z(), v.z() * v.z();
+  return o;
+}
+
+/// a b' + b a'
+Symmetric twice_outer(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  Symmetric o;
+  o << 2 * a.x() * b.x(), a.x() * b.y() + a.y() * b.x(), a.x() * b.z() + a.z() * b.x(),
+      2 * a.y() * b.y(), a.y() * b.z() + a.z() * b.y(), 2 * a.z() * b.z();
+  return o;
+}
+
+Eigen::Matrix3f matrix_of(const Symmetric& s) {
+  Eigen::Matrix3f m;
+  m << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  return m;
+}
+
+}  // namespace
+
+CellMap::CellMap(const CellMapConfig& config)
+    : config_(config),
+      per_m_(1.0 / static_cast<double>(config.cell_m)),
+      mask_(std::bit_ceil(static_cast<std::size_t>(config.capacity) * 2) - 1),
+      slots_(mask_ + 1, -1) {
+  const auto capacity = static_cast<std::size_t>(config.capacity);
+  cells_.reserve(capacity);
+  sums_.reserve(capacity);
+  free_.reserve(capacity);
+}
+
+CellMap::Index CellMap::index_of(const Eigen::Vector3d& p) const {
+  return {static_cast<std::int32_t>(std::floor(p.x() * per_m_)),
+          static_cast<std::int32_t>(std::floor(p.y() * per_m_)),
+          static_cast<std::int32_t>(std::floor(p.z() * per_m_))};
+}
+
+Eigen::Vector3d CellMap::center_of(const Index& i) const {
+  return Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5) / per_m_;
+}
+
+std::size_t CellMap::slot_of(const Index& i) const {
+  auto h = static_cast<std::uint64_t>(static_cast<std::uint32_t>(i.x)) * 0x9E3779B97F4A7C15ULL;
+  h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(i.y)) * 0xC2B2AE3D27D4EB4FULL;
+  h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(i.z)) * 0x165667B19E3779F9ULL;
+  h ^= h >> 29U;
+  return static_cast<std::size_t>(h * 0xBF58476D1CE4E5B9ULL >> 20U) & mask_;
+}
+
+std::int32_t CellMap::find_cell(const Index& i) const {
+  for (std::size_t slot = slot_of(i); slots_[slot] >= 0; slot = (slot + 1) & mask_) {
+    if (cells_[static_cast<std::size_t>(slots_[slot])].index == i) return slots_[slot];
+  }
+  return -1;
+}
+
+std::int32_t CellMap::find_or_add(const Index& i) {
+  std::size_t slot = slot_of(i);
+  for (; slots_[slot] >= 0; slot = (slot + 1) & mask_) {
+    if (cells_[static_cast<std::size_t>(slots_[slot])].index == i) return slots_[slot];
+  }
+  if (used_ == config_.capacity) {
+    ++refused_;
+    return -1;
+  }
+  auto at = static_cast<std::int32_t>(cells_.size());
+  if (free_.empty()) {
+    cells_.emplace_back();
+    sums_.emplace_back();
+  } else {
+    at = free_.back();
+    free_.pop_back();
+    cells_[static_cast<std::size_t>(at)] = Cell{};
+    sums_[static_cast<std::size_t>(at)] = Sums{};
+  }
+  slots_[slot] = at;
+  ++used_;
+  cells_[static_cast<std::size_t>(at)].index = i;
+  cells_[static_cast<std::size_t>(at)].born = keyframe_;
+  return at;
+}
+
+void CellMap::insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
+  const Index i = index_of(point_m);
+  const std::int32_t at = find_or_add(i);
+  if (at < 0) return;
+  Sums& sums = sums_[static_cast<std::size_t>(at)];
+  if (sums.count >= config_.full_count) return;
+  const Eigen::Vector3f p = (point_m - center_of(i)).cast<float>();
+  // Seen through a window of three cells, a longer reach is just "all of it".
+  const float window_m = 3.0F * config_.cell_m;
+  const float excess = std::max(1.0F, reach_m.squaredNorm() / (window_m * window_m));
+  sums.count += 1.0F;
+  sums.point += p;
+  sums.square += outer(p) + outer(reach_m) / (12.0F * excess);  // variance of an even spread
+}
+
+Match CellMap::find(const Eigen::Vector3d& point_m) {
+  const Index i = index_of(point_m);
+  const std::int32_t at = find_cell(i);
+  if (at < 0) return {};
+  Cell& cell = cells_[static_cast<std::size_t>(at)];
+  if (keyframe_ >= cell.refit_at) fit(cell);
+  if (cell.information.isZero(0.0F)) return {};
+  return {(point_m - center_of(i)).cast<float>() - cell.mean_m, &cell.information};
+}
+
+CellMap::Sums CellMap::sums_around(const Index& i) const {
+  Sums all;
+  for (std::int32_t x = -1; x <= 1; ++x) {
+    for (std::int32_t y = -1; y <= 1; ++y) {
+      for (std::int32_t z = -1; z <= 1; ++z) {
+        const std::int32_t at = find_cell({i.x + x, i.y + y, i.z + z});
+        if (at < 0) continue;
+        const Sums& one = sums_[static_cast<std::size_t>(at)];
+        const Eigen::Vector3f o = config_.cell_m * Eigen::Vector3i(x, y, z).cast<float>();
+        all.count += one.count;
+        all.point += one.point + one.count * o;
+        all.square += one.square + twice_outer(o, one.point) + one.count * outer(o);
+      }
+    }
+  }
+  return all;
+}
+
+void CellMap::fit(Cell& cell) const {
+  cell.refit_at = keyframe_ + 1 + (keyframe_ - cell.born) / 4;
+  cell.information.setZero();
+  const Sums sums = sums_around(cell.index);
+  if (sums.count < kMinCount) return;
+  cell.mean_m = sums.point / sums.count;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(matrix_of(sums.square / sums.count - outer(cell.mean_m)));
+  const float thin_m = kThin * 3.0F * config_.cell_m;
+  const float doubt = config_.noise_m * config_.noise_m + kFewPoints_m * kFewPoints_m / sums.count;
+  for (int k = 0; k < 3; ++k) {
+    const float variance = std::max(solver.eigenvalues()[k], 0.0F) + doubt;
+    const float weight = std::max(0.0F, 1.0F / variance - 1.0F / (thin_m * thin_m));
+    cell.information += weight * outer(solver.eigenvectors().col(k));
+  }
+}
+
+void CellMap::clear() {
+  std::fill(slots_.begin(), slots_.end(), -1);
+  cells_.clear();
+  sums_.clear();
+  free_.clear();
+  used_ = 0;
+}
+
+void CellMap::remove(std::size_t slot) {
+  free_.push_back(slots_[slot]);
+  --used_;
+  // Backward shift: later entries of the probe chain move into the hole, no tombstones.
+  std::size_t hole = slot;
+  for (std::size_t next = (hole + 1) & mask_; slots_[next] >= 0; next = (next + 1) & mask_) {
+    const std::size_t home = slot_of(cells_[static_cast<std::size_t>(slots_[next])].index);
+    if (((next - home) & mask_) < ((next - hole) & mask_)) continue;
+    slots_[hole] = slots_[next];
+    hole = next;
+  }
+  slots_[hole] = -1;
+}
+
+void CellMap::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
+  const std::size_t share = (mask_ + 1) / kSweepShare;
+  for (std::size_t n = 0; n < share; ++n) {
+    if (slots_[sweep_] >= 0) {
+      const Index& i = cells_[static_cast<std::size_t>(slots_[sweep_])].index;
+      if ((center_of(i) - center_m).squaredNorm() > radius_m * radius_m) {
+        remove(sweep_);
+        continue;  // another cell may have moved into this slot
+      }
+    }
+    sweep_ = (sweep_ + 1) & mask_;
+  }
+}
+
+}  // namespace lilo::standard

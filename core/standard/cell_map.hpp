@@ -1,0 +1,99 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+/// The local map: points summed up in small cubic cells of a hash table.
+namespace lilo::standard {
+
+/// Symmetric 3x3 matrix: xx xy xz yy yz zz.
+using Symmetric = Eigen::Matrix<float, 6, 1>;
+
+/// What the map says about a point near one cell.
+struct Match {
+  Eigen::Vector3f from_mean_m;             ///< from the mean of the map points around to the point
+  const Symmetric* information = nullptr;  ///< 1/m^2; nullptr: the map knows too little there
+};
+
+struct CellMapConfig {
+  float cell_m = 0.5F;
+  float noise_m = 0.02F;      ///< 1 sigma of a return across a surface
+  int capacity = 100000;      ///< cells; beyond it new ones are refused and counted
+  float full_count = 100.0F;  ///< points a cell takes: the first ones have drifted least
+};
+
+/// Hash table of cells. A cell's distribution is the Gaussian of the points in the 3x3x3 cells
+/// around it. It informs only along directions in which the points are thin against the window: a
+/// wall along its normal, a trunk across its axis, foliage hardly at all. What fills its window
+/// evenly would only hold the scan where it is (and drag it towards what was seen first).
+/// Memory is reserved at construction. Not thread-safe.
+class CellMap {
+ public:
+  explicit CellMap(const CellMapConfig& config);
+
+  /// Adds a point of the odometry frame. `reach_m`: vector to the next sampled point on the same
+  /// surface. The surface between the two was not seen and counts as spread; without it a single
+  /// ring on the ground looks like a plane through its own rays, blind to pitch ("cone lock").
+  void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m);
+
+  /// The distribution around a point. Fits are cached: a young cell is fitted again after every
+  /// end_keyframe(), an older one ever more rarely.
+  Match find(const Eigen::Vector3d& point_m);
+
+  void end_keyframe() { ++keyframe_; }
+
+  /// Forgets everything, keeps the memory.
+  void clear();
+
+  /// Forgets cells farther than `radius_m` from `center_m`. Every call looks at the same small
+  /// share of the table, so that no single scan pays for it.
+  void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
+
+  [[nodiscard]] int size() const { return used_; }
+  [[nodiscard]] std::uint64_t refused() const { return refused_; }
+
+ private:
+  struct Index {
+    std::int32_t x, y, z;
+    bool operator==(const Index&) const = default;
+  };
+  /// What find() reads: one cache line.
+  struct alignas(64) Cell {
+    Index index{};
+    std::uint32_t born = 0;                            // keyframe
+    std::uint32_t refit_at = 0;                        // keyframe from which the fit is out of date
+    Eigen::Vector3f mean_m = Eigen::Vector3f::Zero();  // from the cell's centre
+    Symmetric information = Symmetric::Zero();         // zero: too few points
+  };
+  /// What insert() sums, from the cell's centre.
+  struct Sums {
+    float count = 0.0F;
+    Eigen::Vector3f point = Eigen::Vector3f::Zero();
+    Symmetric square = Symmetric::Zero();
+  };
+
+  [[nodiscard]] Index index_of(const Eigen::Vector3d& p) const;
+  [[nodiscard]] Eigen::Vector3d center_of(const Index& i) const;
+  [[nodiscard]] std::size_t slot_of(const Index& i) const;
+  [[nodiscard]] std::int32_t find_cell(const Index& i) const;
+  std::int32_t find_or_add(const Index& i);
+  [[nodiscard]] Sums sums_around(const Index& i) const;
+  void fit(Cell& cell) const;
+  void remove(std::size_t slot);
+
+  CellMapConfig config_;
+  double per_m_;
+  std::size_t mask_;
+  std::vector<std::int32_t> slots_;  // index into cells_ and sums_, or -1
+  std::vector<Cell> cells_;
+  std::vector<Sums> sums_;
+  std::vector<std::int32_t> free_;
+  std::size_t sweep_ = 0;
+  std::uint32_t keyframe_ = 1;
+  int used_ = 0;
+  std::uint64_t refused_ = 0;
+};
+
+}  // namespace lilo::standard

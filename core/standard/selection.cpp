@@ -1,0 +1,53 @@
+#include "core/standard/selection.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace lilo::standard {
+
+Selection::Selection(int ground_goal, int structure_goal)
+    : goal_{ground_goal, structure_goal},
+      taken_(std::bit_ceil(static_cast<std::size_t>(ground_goal + structure_goal) * 4)),
+      mask_(taken_.size() - 1) {
+  chosen_.reserve(taken_.size() / 2);
+}
+
+std::uint64_t Selection::voxel_of(const Feature& f) const {
+  const float per_m = 1.0F / voxel_m_[static_cast<std::size_t>(f.kind)];
+  constexpr float kOffset = 1 << 15;  // keeps the truncated index positive
+  const auto part = [&](float v_m) {
+    return static_cast<std::uint64_t>(std::floor(v_m * per_m) + kOffset) & 0xFFFFU;
+  };
+  return 1U + (part(f.x_m) | part(f.y_m) << 16U | part(f.z_m) << 32U |
+               static_cast<std::uint64_t>(f.kind) << 48U);
+}
+
+bool Selection::take(std::uint64_t voxel) {
+  auto slot = static_cast<std::size_t>(voxel * 0x9E3779B97F4A7C15ULL >> 32U) & mask_;
+  for (; taken_[slot] != 0; slot = (slot + 1) & mask_) {
+    if (taken_[slot] == voxel) return false;
+  }
+  taken_[slot] = voxel;
+  return true;
+}
+
+const std::vector<Feature>& Selection::choose(const std::vector<Feature>& all) {
+  std::fill(taken_.begin(), taken_.end(), 0);
+  chosen_.clear();
+  std::array<int, kKinds> count{};
+  for (const Feature& f : all) {
+    const auto kind = static_cast<std::size_t>(f.kind);
+    if (count[kind] >= 2 * goal_[kind] || !take(voxel_of(f))) continue;
+    ++count[kind];
+    chosen_.push_back(f);
+  }
+  for (std::size_t k = 0; k < kKinds; ++k) {
+    // On surfaces the number goes with the inverse square of the voxel; 0.35 instead of 0.5 damps.
+    const float ratio = static_cast<float>(std::max(count[k], 1)) / static_cast<float>(goal_[k]);
+    voxel_m_[k] = std::clamp(voxel_m_[k] * std::pow(ratio, 0.35F), 0.05F, 5.0F);
+  }
+  return chosen_;
+}
+
+}  // namespace lilo::standard

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/standard/feature_image.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace lilo::standard {
+
+/// Chooses the features to align: one a voxel, so that near and far surfaces count by their area
+/// and not by the density of the rays. The voxels of each kind follow the scene, to keep the
+/// numbers of features near their goals. No allocation after construction.
+class Selection {
+ public:
+  Selection(int ground_goal, int structure_goal);
+
+  /// The chosen features, in the image's order; the result lives until the next call.
+  const std::vector<Feature>& choose(const std::vector<Feature>& all);
+
+ private:
+  static constexpr int kKinds = 2;
+  [[nodiscard]] std::uint64_t voxel_of(const Feature& f) const;
+  bool take(std::uint64_t voxel);
+
+  std::array<int, kKinds> goal_;
+  std::array<float, kKinds> voxel_m_{1.0F, 0.5F};
+  std::vector<std::uint64_t> taken_;  // hash set of voxels, 0: empty
+  std::size_t mask_;
+  std::vector<Feature> chosen_;
+};
+
+}  // namespace lilo::standard

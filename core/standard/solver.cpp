@@ -1,0 +1,190 @@
+#include "core/standard/solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace lilo::standard {
+namespace {
+
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxUnknowns, kMaxUnknowns>;
+
+/// d(k+1) = Phi d(k): the deviation moves on at its rate.
+KnotInformation transition(double dt_s) {
+  KnotInformation phi = KnotInformation::Identity();
+  phi.topRightCorner<6, 6>().diagonal().setConstant(dt_s);
+  return phi;
+}
+
+void add_prior(const Prior& prior, const SolverConfig& config, const Unknowns& x, Matrix& H,
+               Unknowns& b) {
+  H.topLeftCorner<kKnotSize, kKnotSize>() += prior.begin_information;
+  b.head<kKnotSize>() -= prior.begin_information * x.head<kKnotSize>();
+  const double dt_s = prior.span_s / config.segments;
+  const KnotInformation phi = transition(dt_s);
+  const KnotInformation W = process_information(config.acceleration_density, dt_s);
+  const KnotInformation Wphi = W * phi;
+  for (int k = 0; k < config.segments; ++k) {
+    const int i = kKnotSize * k, j = i + kKnotSize;
+    const Eigen::Matrix<double, kKnotSize, 1> e =
+        x.segment<kKnotSize>(j) - phi * x.segment<kKnotSize>(i);
+    H.block<kKnotSize, kKnotSize>(i, i) += phi.transpose() * Wphi;
+    H.block<kKnotSize, kKnotSize>(i, j) -= Wphi.transpose();
+    H.block<kKnotSize, kKnotSize>(j, i) -= Wphi;
+    H.block<kKnotSize, kKnotSize>(j, j) += W;
+    b.segment<kKnotSize>(i) += Wphi.transpose() * e;
+    b.segment<kKnotSize>(j) -= W * e;
+  }
+}
+
+/// Information of the last knot when the others are not asked: the Schur complement.
+KnotInformation marginal_of_last(const Matrix& H) {
+  const auto n = H.rows() - kKnotSize;
+  const Matrix rest = H.topLeftCorner(n, n);
+  const Matrix cross = H.topRightCorner(n, kKnotSize);
+  return H.bottomRightCorner<kKnotSize, kKnotSize>() - cross.transpose() * rest.ldlt().solve(cross);
+}
+
+}  // namespace
+
+KnotInformation process_information(const Vector6d& acceleration_density, double dt_s) {
+  const Vector6d w = acceleration_density.cwiseInverse();
+  KnotInformation W = KnotInformation::Zero();
+  W.topLeftCorner<6, 6>().diagonal() = 12.0 / (dt_s * dt_s * dt_s) * w;
+  W.topRightCorner<6, 6>().diagonal() = -6.0 / (dt_s * dt_s) * w;
+  W.bottomLeftCorner<6, 6>().diagonal() = -6.0 / (dt_s * dt_s) * w;
+  W.bottomRightCorner<6, 6>().diagonal() = 4.0 / dt_s * w;
+  return W;
+}
+
+KnotInformation Solver::propagated(const KnotInformation& information, double dt_s) const {
+  constexpr double kNoTime_s = 1e-5;  // from one firing to the next
+  if (dt_s < kNoTime_s) return information;
+  const KnotInformation phi = transition(dt_s);
+  const KnotInformation Q = process_information(config_.acceleration_density, dt_s).inverse();
+  return (phi * information.inverse() * phi.transpose() + Q).inverse();
+}
+
+void LocalMaps::end_keyframe() {
+  for (CellMap* map : {&ground_fine, &ground_coarse, &structure_fine, &structure_coarse}) {
+    map->end_keyframe();
+  }
+}
+
+void LocalMaps::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
+  for (CellMap* map : {&ground_fine, &ground_coarse, &structure_fine, &structure_coarse}) {
+    map->forget_beyond(center_m, radius_m);
+  }
+}
+
+void LocalMaps::clear() {
+  for (CellMap* map : {&ground_fine, &ground_coarse, &structure_fine, &structure_coarse}) {
+    map->clear();
+  }
+}
+
+int LocalMaps::size() const {
+  return ground_fine.size() + ground_coarse.size() + structure_fine.size() +
+         structure_coarse.size();
+}
+
+void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
+                        Solution& solution) {
+  sample(solution.trajectory, sampled_);
+  for (Bin& bin : bins_) {
+    bin.H.setZero();
+    bin.b.setZero();
+  }
+  const float ground_c2 = config_.ground_kernel * config_.ground_kernel;
+  const float structure_c2 = config_.structure_kernel * config_.structure_kernel;
+  double weights = 0.0, squares = 0.0;
+  solution.matched = 0;
+  const float data_weight = config_.data_weight * static_cast<float>(stride);
+  for (std::size_t k = 0; k < features.size(); k += stride) {
+    const Feature& f = features[k];
+    const Eigen::Vector3f turned = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
+    const Eigen::Vector3d q = turned.cast<double>() + sampled_.origin_m(f.s);
+    const bool ground = f.kind == Kind::ground;
+    Match match = (ground ? maps.ground_fine : maps.structure_fine).find(q);
+    if (match.information == nullptr) {
+      match = (ground ? maps.ground_coarse : maps.structure_coarse).find(q);
+    }
+    if (match.information == nullptr) continue;
+    const Eigen::Vector3f& r = match.from_mean_m;
+    const Symmetric& i = *match.information;
+    Eigen::Matrix3f information;
+    information << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
+    const Eigen::Vector3f Or = information * r;
+    const float square = r.dot(Or);
+    const float c2 = ground ? ground_c2 : structure_c2;
+    const float robust = 1.0F / (1.0F + square / c2);
+    const float w = robust * data_weight;
+    ++solution.matched;
+    weights += static_cast<double>(robust);
+    squares += static_cast<double>(robust * square);
+    // J = [-[turned]x  I]: J'OJ and J'Or in blocks.
+    Eigen::Matrix3f cross;
+    cross << 0, -turned.z(), turned.y(), turned.z(), 0, -turned.x(), -turned.y(), turned.x(), 0;
+    const Eigen::Matrix3f CO = cross * information;  // -J_w' O = [turned]x O
+    Bin& bin = bins_[static_cast<std::size_t>(std::lround(f.s * kBins))];
+    bin.H.topLeftCorner<3, 3>() += (w * (CO * cross.transpose())).cast<double>();
+    bin.H.topRightCorner<3, 3>() += (w * CO).cast<double>();
+    bin.H.bottomRightCorner<3, 3>() += (w * information).cast<double>();
+    bin.b.head<3>() -= (w * (cross * Or)).cast<double>();
+    bin.b.tail<3>() -= (w * Or).cast<double>();
+  }
+  solution.inliers = weights;
+  solution.mean_square = weights > 0.0 ? squares / weights : 0.0;
+}
+
+Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior) {
+  // Far from the solution a part of the features shows the way as well as all of them.
+  constexpr std::size_t kCoarseStride = 4;
+  constexpr double kNear_rad = 1e-3, kNear_m = 0.01;
+  constexpr double kEnough_rad = 5e-5, kEnough_m = 5e-4;
+  std::size_t stride = kCoarseStride;
+  Solution solution;
+  const int n = kKnotSize * (config_.segments + 1);
+  solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, config_.segments,
+                         Unknowns::Zero(n)};
+  while (solution.iterations < config_.max_iterations && !solution.converged) {
+    accumulate(features, stride, maps, solution);
+    Matrix H = Matrix::Zero(n, n);
+    Unknowns b = Unknowns::Zero(n);
+    solution.data_information.setZero();
+    for (int bin = 0; bin <= kBins; ++bin) {
+      Matrix6d& A = bins_[static_cast<std::size_t>(bin)].H;
+      A.bottomLeftCorner<3, 3>() = A.topRightCorner<3, 3>().transpose();
+      solution.data_information += A;
+      const KnotWeights w =
+          weights_at(static_cast<double>(bin) / kBins, config_.segments, prior.span_s);
+      for (int i = 0; i < 4; ++i) {
+        const int row = kKnotSize * w.first + 6 * i;
+        const double wi = w.weight[static_cast<std::size_t>(i)];
+        b.segment<6>(row) += wi * bins_[static_cast<std::size_t>(bin)].b;
+        for (int j = 0; j < 4; ++j) {
+          H.block<6, 6>(row, kKnotSize * w.first + 6 * j) +=
+              wi * w.weight[static_cast<std::size_t>(j)] * A;
+        }
+      }
+    }
+    add_prior(prior, config_, solution.trajectory.knots, H, b);
+    const Unknowns step = H.ldlt().solve(b);
+    if (!step.allFinite()) break;
+    solution.trajectory.knots += step;
+    ++solution.iterations;
+    const Vector6d end = step.segment<6>(n - kKnotSize);
+    const double turned_rad = end.head<3>().norm(), moved_m = end.tail<3>().norm();
+    solution.converged = stride == 1 && turned_rad < kEnough_rad && moved_m < kEnough_m;
+    if (turned_rad < kNear_rad && moved_m < kNear_m) stride = 1;
+    // The last step is always taken with all features.
+    if (solution.iterations + 1 >= config_.max_iterations) stride = 1;
+    if (solution.converged || solution.iterations == config_.max_iterations) {
+      solution.end_information = marginal_of_last(H);
+    }
+  }
+  return solution;
+}
+
+}  // namespace lilo::standard

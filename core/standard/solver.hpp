@@ -1,0 +1,82 @@
+#pragma once
+
+#include "core/standard/cell_map.hpp"
+#include "core/standard/feature_image.hpp"
+#include "core/standard/trajectory.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <vector>
+
+/// Alignment of one scan with the local map: Gauss-Newton over the knots of its trajectory.
+namespace lilo::standard {
+
+/// The maps, one per kind of feature, each at two resolutions: where the fine one knows too little
+/// the coarse one is asked.
+struct LocalMaps {
+  CellMap ground_fine, ground_coarse, structure_fine, structure_coarse;
+
+  void end_keyframe();
+  void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
+  void clear();
+  [[nodiscard]] int size() const;  ///< cells
+};
+
+/// What is believed of the motion before the scan is looked at.
+struct Prior {
+  Pose T_begin;
+  Twist twist;
+  double span_s = 0.1;
+  KnotInformation begin_information = KnotInformation::Identity();  ///< of the first knot
+};
+
+struct SolverConfig {
+  int segments = 1;
+  int max_iterations = 8;
+  float ground_kernel = 5.0F;     ///< Cauchy scale in sigmas: wide, ground is rough
+  float structure_kernel = 2.0F;  ///< tight, structure moves and hides
+  float data_weight = 0.1F;  ///< neighbouring residuals are not independent: each counts for less
+  /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
+  Vector6d acceleration_density = Vector6d::Ones();
+};
+
+struct Solution {
+  Trajectory trajectory;
+  KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
+  Matrix6d data_information = Matrix6d::Zero();               ///< of the pose, from data alone
+  int matched = 0;           ///< features that found a distribution
+  double inliers = 0;        ///< sum of robust weights
+  double mean_square = 0.0;  ///< weighted mean of squared residuals in sigmas
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Aligns features with the maps. Keeps its working memory between calls.
+class Solver {
+ public:
+  explicit Solver(const SolverConfig& config) : config_(config) {}
+  Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior);
+
+  /// The information of a knot left after `dt_s` without data.
+  [[nodiscard]] KnotInformation propagated(const KnotInformation& information, double dt_s) const;
+
+ private:
+  static constexpr int kBins = 32;  // a scan's residuals share one of so many instants
+  struct Bin {
+    Matrix6d H;
+    Vector6d b;
+  };
+  void accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
+                  Solution& solution);
+
+  SolverConfig config_;
+  Sampled sampled_;
+  std::array<Bin, kBins + 1> bins_;
+};
+
+/// Information of the change between two knots `dt_s` apart under white noise on acceleration:
+/// inverse of Q = [dt^3/3 Qc, dt^2/2 Qc; dt^2/2 Qc, dt Qc].
+KnotInformation process_information(const Vector6d& acceleration_density, double dt_s);
+
+}  // namespace lilo::standard

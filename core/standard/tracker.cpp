@@ -1,0 +1,211 @@
+#include "core/standard/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lilo::standard {
+namespace {
+
+double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+CellMap make_map(const StandardConfig& config, double cell_m, int capacity) {
+  return CellMap({.cell_m = static_cast<float>(cell_m),
+                  .noise_m = static_cast<float>(config.noise_m),
+                  .capacity = capacity});
+}
+
+LocalMaps make_maps(const StandardConfig& c) {
+  const auto fine = [&] { return make_map(c, c.cell_m, c.map_cells); };
+  // Cells of a surface grow fewer with the square of their size; a quarter leaves room.
+  const auto coarse = [&] { return make_map(c, c.coarse_cell_m, c.map_cells / 4); };
+  return {fine(), coarse(), fine(), coarse()};
+}
+
+SolverConfig solver_config(const StandardConfig& c) {
+  SolverConfig s;
+  s.segments = std::clamp(c.segments, 1, kMaxSegments);
+  s.max_iterations = c.max_iterations;
+  s.ground_kernel = static_cast<float>(c.ground_kernel);
+  s.structure_kernel = static_cast<float>(c.structure_kernel);
+  s.data_weight = static_cast<float>(c.data_weight);
+  s.acceleration_density << c.roll_pitch_density, c.roll_pitch_density, c.yaw_density,
+      Eigen::Vector3d::Constant(c.translation_density);
+  return s;
+}
+
+/// At the start the pose is the origin by definition; of the motion only what vehicles do is known:
+/// they go fast along the ground and turn about the upright, and do little else.
+KnotInformation first_information() {
+  constexpr double kPose = 1e-4;  // m, rad
+  constexpr double kSpeed_mps = 20.0, kClimb_mps = 0.5, kYaw_radps = 0.5, kTilt_radps = 0.1;
+  Eigen::Matrix<double, kKnotSize, 1> sigma;
+  sigma << Vector6d::Constant(kPose), kTilt_radps, kTilt_radps, kYaw_radps, kSpeed_mps, kSpeed_mps,
+      kClimb_mps;
+  return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+}
+
+}  // namespace
+
+Tracker::Tracker(const OdometryConfig& config)
+    : config_(config),
+      image_(config.standard.columns),
+      selection_(config.standard.ground_features, config.standard.structure_features),
+      maps_(make_maps(config.standard)),
+      solver_(solver_config(config.standard)),
+      information_(first_information()) {}
+
+Estimate Tracker::process(const Scan& scan, StageHook hook) {
+  const std::vector<Feature>& features =
+      image_.build(scan, config_.min_range_m, config_.max_range_m);
+  hook(Stage::project);
+  const std::vector<Feature>& chosen = selection_.choose(features);
+  hook(Stage::filter);
+  const Prior prior = predict(scan);
+  const Solution solution =
+      scan_count_ == 1 ? start(chosen, prior) : solver_.solve(chosen, maps_, prior);
+  status_ = status_of(scan, solution, chosen.size());
+  hook(Stage::align);
+  accept(scan, prior, solution);
+  grow_map(features, solution.trajectory);
+  hook(Stage::update_map);
+  ++scan_count_;
+  return estimate(scan, solution, chosen);
+}
+
+Prior Tracker::predict(const Scan& scan) const {
+  constexpr double kUsualSpan_s = 0.1;
+  const double duration_s = seconds(scan.end_ns - scan.start_ns);
+  const double since_s = scan_count_ == 0 ? duration_s : seconds(scan.end_ns - last_end_ns_);
+  Prior prior;
+  // Returns that were compensated all belong to the end: the trajectory reaches back to the last.
+  prior.span_s = scan.motion_compensated ? since_s : duration_s;
+  if (prior.span_s <= 0.0) prior.span_s = kUsualSpan_s;
+  const double gap_s = std::max(0.0, since_s - prior.span_s);
+  prior.T_begin = moved(T_odom_sensor_, twist_, gap_s);
+  prior.twist = twist_;
+  prior.begin_information = solver_.propagated(information_, gap_s);
+  return prior;
+}
+
+/// Aligns the second scan when the sensor moved by `twist` during both: the first one, which alone
+/// makes the map, is straightened by it.
+Solution Tracker::try_start(const std::vector<Feature>& chosen, Prior prior, const Twist& twist) {
+  Trajectory first;
+  first.twist = twist;
+  first.span_s = first_span_s_;
+  first.T_begin = moved({}, twist, -first_span_s_);
+  first.knots = Unknowns::Zero(Eigen::Index{kKnotSize} * (first.segments + 1));
+  maps_.clear();
+  insert(first_features_, first);
+  prior.twist = twist;
+  return solver_.solve(chosen, maps_, prior);
+}
+
+/// The second scan tells the motion, and so how the first one was bent. Standing still is tried
+/// first, then speeds all around: the one whose two scans agree best is refined until the motion
+/// found is the motion assumed.
+Solution Tracker::start(const std::vector<Feature>& chosen, const Prior& prior) {
+  constexpr double kClearlyBetter = 1.05;
+  constexpr int kMaxRounds = 15, kHeadings = 8;
+  constexpr double kSpeedEnough_mps = 0.02;
+  Solution best = try_start(chosen, prior, {});
+  for (const double speed_mps : {6.0, 12.0, 18.0, 24.0, 30.0}) {
+    for (int k = 0; k < kHeadings; ++k) {
+      const double heading_rad = 2.0 * std::numbers::pi * k / kHeadings;
+      Twist twist;
+      twist.linear_mps = {speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad),
+                          0.0};
+      const Solution other = try_start(chosen, prior, twist);
+      if (other.inliers > kClearlyBetter * best.inliers) best = other;
+    }
+  }
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const Twist twist = twist_between({}, best.trajectory.end(), prior.span_s);
+    const double change_mps = (twist.linear_mps - best.trajectory.twist.linear_mps).norm();
+    best = try_start(chosen, prior, twist);
+    if (change_mps < kSpeedEnough_mps) break;
+  }
+  first_features_ = {};
+  return best;
+}
+
+TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
+                                  std::size_t feature_count) const {
+  constexpr double kMinMatched = 0.2;  // of the features
+  constexpr double kMinWeight = 0.3;   // mean robust weight; a good alignment has 0.7 and more
+  constexpr int kMinFeatures = 100;
+  if (scan_count_ == 0) return TrackingStatus::initializing;
+  const double matched = solution.matched;
+  if (matched < kMinFeatures || matched < kMinMatched * static_cast<double>(feature_count) ||
+      solution.inliers < kMinWeight * matched) {
+    return TrackingStatus::lost;
+  }
+  return scan.complete && solution.converged ? TrackingStatus::tracking : TrackingStatus::degraded;
+}
+
+void Tracker::accept(const Scan& scan, const Prior& prior, const Solution& solution) {
+  last_end_ns_ = scan.end_ns;
+  if (status_ == TrackingStatus::initializing) {
+    first_span_s_ = prior.span_s;
+    return;
+  }
+  if (status_ == TrackingStatus::lost) {
+    T_odom_sensor_ = moved(prior.T_begin, prior.twist, prior.span_s);
+    information_ = solver_.propagated(prior.begin_information, prior.span_s);
+    return;
+  }
+  T_odom_sensor_ = solution.trajectory.end();
+  twist_ = solution.trajectory.end_twist();
+  information_ = solution.end_information;
+}
+
+void Tracker::grow_map(const std::vector<Feature>& features, const Trajectory& trajectory) {
+  const StandardConfig& c = config_.standard;
+  maps_.forget_beyond(T_odom_sensor_.translation_m, c.map_radius_m);
+  if (status_ == TrackingStatus::lost) return;
+  const Pose moved_by = T_odom_keyframe_.inverse() * T_odom_sensor_;
+  if (scan_count_ > 0 && moved_by.translation_m.norm() < c.keyframe_m &&
+      so3_log(moved_by.rotation).norm() < c.keyframe_rad) {
+    return;
+  }
+  if (scan_count_ == 0) first_features_ = features;
+  insert(features, trajectory);
+  T_odom_keyframe_ = T_odom_sensor_;
+}
+
+void Tracker::insert(const std::vector<Feature>& features, const Trajectory& trajectory) {
+  sample(trajectory, sampled_);
+  const auto limit = static_cast<std::size_t>(config_.standard.map_features);
+  const std::size_t step = std::max<std::size_t>(1, (features.size() + limit - 1) / limit);
+  for (std::size_t k = 0; k < features.size(); k += step) {
+    const Feature& f = features[k];
+    const Eigen::Vector3d p =
+        sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m}).cast<double>() + sampled_.origin_m(f.s);
+    const Eigen::Vector3f reach = sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m});
+    const bool ground = f.kind == Kind::ground;
+    (ground ? maps_.ground_fine : maps_.structure_fine).insert(p, reach);
+    (ground ? maps_.ground_coarse : maps_.structure_coarse).insert(p, reach);
+  }
+  maps_.end_keyframe();
+}
+
+Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
+                           const std::vector<Feature>& chosen) const {
+  Estimate e;
+  e.scan_index = scan.index;
+  e.stamp_ns = scan.end_ns;
+  e.T_odom_sensor = T_odom_sensor_;
+  e.twist = twist_;
+  e.status = status_;
+  e.ground_count = static_cast<int>(std::count_if(
+      chosen.begin(), chosen.end(), [](const Feature& f) { return f.kind == Kind::ground; }));
+  e.surface_count = static_cast<int>(chosen.size()) - e.ground_count;
+  e.map_surface_count = maps_.size();
+  e.correspondence_count = solution.matched;
+  e.iterations = solution.iterations;
+  e.residual_rms_sigma = std::sqrt(solution.mean_square);
+  return e;
+}
+
+}  // namespace lilo::standard

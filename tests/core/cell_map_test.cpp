@@ -1,0 +1,114 @@
+#include "core/standard/cell_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace lilo::standard {
+namespace {
+
+Eigen::Matrix3f matrix_of(const Symmetric& s) {
+  Eigen::Matrix3f m;
+  m << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  return m;
+}
+
+class Filled : public testing::Test {
+ protected:
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(rng_);
+  }
+  std::mt19937 rng_{11};
+  CellMap map_{CellMapConfig{}};
+  const Eigen::Vector3f no_reach_ = Eigen::Vector3f::Zero();
+};
+
+TEST_F(Filled, AWallInformsAlongItsNormalOnly) {
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.8, 0.6, 0.0);
+  const Eigen::Vector3d along(-0.6, 0.8, 0.0);
+  for (int k = 0; k < 4000; ++k) {
+    map_.insert(100.2 * along + uniform(-3, 3) * along + uniform(-3, 3) * Eigen::Vector3d::UnitZ(),
+                no_reach_);
+  }
+  const Eigen::Vector3d probe = 100.2 * along + 0.02 * normal;
+  const Match match = map_.find(probe);
+  ASSERT_NE(match.information, nullptr);
+  EXPECT_NEAR(match.from_mean_m.dot(normal.cast<float>()), 0.02F, 0.002F);
+  const Eigen::Matrix3f O = matrix_of(*match.information);
+  const Eigen::Vector3f n = normal.cast<float>(), t = along.cast<float>();
+  EXPECT_GT(n.dot(O * n), 1000.0F);
+  EXPECT_LT(t.dot(O * t), 0.01F * n.dot(O * n));
+  EXPECT_LT(O(2, 2), 0.01F * n.dot(O * n));
+}
+
+TEST_F(Filled, ATrunkInformsAcrossItsAxisOnly) {
+  for (int k = 0; k < 2000; ++k) {
+    const double angle = uniform(0.0, 3.1);  // the side that is seen
+    map_.insert({5.0 + 0.05 * std::cos(angle), -3.0 + 0.05 * std::sin(angle), uniform(-3, 3)},
+                no_reach_);
+  }
+  const Match match = map_.find({5.0, -3.0, 0.3});
+  ASSERT_NE(match.information, nullptr);
+  const Eigen::Matrix3f O = matrix_of(*match.information);
+  EXPECT_GT(O(0, 0), 100.0F);
+  EXPECT_GT(O(1, 1), 100.0F);
+  EXPECT_LT(O(2, 2), 0.01F * O(0, 0));
+}
+
+TEST_F(Filled, FoliageInformsNowhere) {
+  for (int k = 0; k < 4000; ++k) {
+    map_.insert({uniform(-2, 2), uniform(-2, 2), uniform(-2, 2)}, no_reach_);
+  }
+  EXPECT_EQ(map_.find({0.2, 0.2, 0.2}).information, nullptr);
+}
+
+// One ring on a slope is a thin line in two directions. Without its reach it would claim to know
+// the height and, being thin across the beam too, hold the scan to its own cone.
+TEST_F(Filled, ASingleRingOnTheGroundSaysNothingAlongItsBeam) {
+  const double slope = 0.1;  // of the ground, along x
+  for (int k = 0; k < 60; ++k) {
+    map_.insert({6.0, uniform(-0.7, 0.7), 0.6}, Eigen::Vector3f(1.2F, 0.0F, 0.12F));
+  }
+  const Match match = map_.find({6.0, 0.1, 0.6});
+  ASSERT_NE(match.information, nullptr);
+  const Eigen::Matrix3f O = matrix_of(*match.information);
+  const Eigen::Vector3f up = Eigen::Vector3f(static_cast<float>(-slope), 0.0F, 1.0F).normalized();
+  const Eigen::Vector3f outward =
+      Eigen::Vector3f(1.0F, 0.0F, static_cast<float>(slope)).normalized();
+  EXPECT_GT(up.dot(O * up), 500.0F);
+  EXPECT_LT(outward.dot(O * outward), 0.01F * up.dot(O * up));
+}
+
+TEST_F(Filled, KnowsNothingWhereNothingWasSeen) {
+  EXPECT_EQ(map_.find({1.0, 2.0, 3.0}).information, nullptr);
+  for (int k = 0; k < 5; ++k) map_.insert({0.1, 0.1, 0.1}, no_reach_);  // one too few
+  EXPECT_EQ(map_.find({0.1, 0.1, 0.1}).information, nullptr);
+}
+
+TEST_F(Filled, ForgetsWhatIsFarAndFindsTheRest) {
+  for (int x = 0; x < 400; ++x) {
+    for (int k = 0; k < 8; ++k) {
+      map_.insert({x + uniform(0, 0.4), uniform(0, 0.4), 0.25}, no_reach_);
+    }
+  }
+  const int before = map_.size();
+  for (int turn = 0; turn < 100; ++turn) map_.forget_beyond({0.0, 0.0, 0.0}, 100.0);
+  EXPECT_LT(map_.size(), before / 2);
+  for (int x = 0; x < 99; ++x) {
+    EXPECT_NE(map_.find({x + 0.2, 0.2, 0.25}).information, nullptr) << x;
+  }
+  for (int x = 101; x < 400; ++x) {
+    EXPECT_EQ(map_.find({x + 0.2, 0.2, 0.25}).information, nullptr) << x;
+  }
+}
+
+TEST(CellMap, RefusesCellsBeyondItsCapacityAndCountsThem) {
+  CellMap map({.capacity = 10});
+  for (int k = 0; k < 25; ++k) map.insert({2.0 * k, 0.0, 0.0}, Eigen::Vector3f::Zero());
+  EXPECT_EQ(map.size(), 10);
+  EXPECT_EQ(map.refused(), 15U);
+}
+
+}  // namespace
+}  // namespace lilo::standard

@@ -1,0 +1,154 @@
+#include "core/odometry.hpp"
+#include "core/standard/feature_image.hpp"
+#include "core/standard/trajectory.hpp"
+#include "tests/core/analytic_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+namespace lilo {
+namespace {
+
+const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
+const BeamTable k64 = test::even_beams(64, -24.8, 2.0);
+
+/// Speeding up and turning on a bumpy road: roll and pitch swing at 2 Hz.
+Pose drive(double t_s, double speed_mps) {
+  const double x_m = speed_mps * (t_s < 1.0 ? 0.5 * t_s * t_s : t_s - 0.5);
+  const double swing = 0.004 * std::sin(12.0 * t_s) * std::min(t_s, 1.0);
+  return {so3_exp({swing, -swing, 0.02 * x_m}), {x_m - 8.0, 0.05 * x_m, 0.2 * swing}};
+}
+
+struct Result {
+  double worst_m = 0.0, worst_rad = 0.0;
+  std::vector<Estimate> estimates;
+};
+
+Result run(const BeamTable& beams, double speed_mps, double start_s = 0.0, int scans = 25) {
+  Odometry odometry{OdometryConfig{}};
+  Result result;
+  Pose T_world_first;
+  for (int k = 0; k < scans; ++k) {
+    const double at_s = start_s + 0.1 * k;
+    const Scan scan = test::scan_of(
+        test::yard(), beams, 900, [&](double s) { return drive(at_s + 0.1 * s, speed_mps); },
+        static_cast<std::uint64_t>(k));
+    result.estimates.push_back(odometry.process(scan));
+    const Pose truth = drive(at_s + 0.1, speed_mps);
+    if (k == 0) T_world_first = truth;
+    const Pose error = truth.inverse() * T_world_first * result.estimates.back().T_odom_sensor;
+    result.worst_m = std::max(result.worst_m, error.translation_m.norm());
+    result.worst_rad = std::max(result.worst_rad, so3_log(error.rotation).norm());
+  }
+  return result;
+}
+
+TEST(DefaultProfile, FollowsADriveWithSixteenBeams) {
+  const Result result = run(k16, 6.0);
+  EXPECT_LT(result.worst_m, 0.05);  // 12 m driven
+  EXPECT_LT(result.worst_rad, 0.005);
+  EXPECT_EQ(result.estimates.front().status, TrackingStatus::initializing);
+  EXPECT_EQ(result.estimates.back().status, TrackingStatus::tracking);
+}
+
+TEST(DefaultProfile, FollowsADriveWithSixtyFourBeams) {
+  const Result result = run(k64, 6.0);
+  EXPECT_LT(result.worst_m, 0.03);
+  EXPECT_LT(result.worst_rad, 0.003);
+}
+
+TEST(DefaultProfile, StartsInMotion) {
+  const Result result = run(k16, 8.0, 1.0, 12);
+  EXPECT_LT(result.worst_m, 0.10);
+  EXPECT_LT(result.worst_rad, 0.005);
+}
+
+TEST(DefaultProfile, TwistIsThatOfTheLastFiring) {
+  const Result result = run(k16, 6.0);
+  const double end_s = 2.5, h = 1e-4;
+  const Pose motion = drive(end_s - h, 6.0).inverse() * drive(end_s + h, 6.0);
+  const Twist& twist = result.estimates.back().twist;
+  EXPECT_LT((twist.linear_mps - motion.translation_m / (2 * h)).norm(), 0.15);
+  EXPECT_LT((twist.angular_radps - so3_log(motion.rotation) / (2 * h)).norm(), 0.05);
+}
+
+TEST(DefaultProfile, StandsStillWithoutDrift) {
+  Odometry odometry{OdometryConfig{}};
+  Pose settled;
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    const Scan scan = test::scan_of(
+        test::yard(), k16, 900, [](double) { return Pose{}; }, k);
+    const Estimate e = odometry.process(scan);
+    if (k == 10) settled = e.T_odom_sensor;
+    if (k <= 10) continue;
+    const Pose change = settled.inverse() * e.T_odom_sensor;
+    EXPECT_LT(e.T_odom_sensor.translation_m.norm(), 0.02) << "scan " << k;
+    EXPECT_LT(change.translation_m.norm(), 5e-4) << "scan " << k;
+    EXPECT_LT(so3_log(change.rotation).norm(), 1e-4) << "scan " << k;
+  }
+}
+
+TEST(DefaultProfile, SameScansSameBits) {
+  const Result a = run(k16, 5.0), b = run(k16, 5.0);
+  for (std::size_t k = 0; k < a.estimates.size(); ++k) {
+    const Pose &p = a.estimates[k].T_odom_sensor, &q = b.estimates[k].T_odom_sensor;
+    EXPECT_EQ(std::memcmp(p.rotation.coeffs().data(), q.rotation.coeffs().data(), 32), 0);
+    EXPECT_EQ(std::memcmp(p.translation_m.data(), q.translation_m.data(), 24), 0);
+  }
+}
+
+TEST(DefaultProfile, EmptyScansAreReportedAndTheMotionGoesOn) {
+  Odometry odometry{OdometryConfig{}};
+  for (int k = 0; k < 25; ++k) {
+    const double at_s = 0.1 * k;
+    Scan scan = test::scan_of(
+        test::yard(), k16, 900, [&](double s) { return drive(at_s + 0.1 * s, 5.0); },
+        static_cast<std::uint64_t>(k));
+    const bool blind = k >= 15 && k < 18;
+    if (blind) scan.returns.clear();
+    const Estimate e = odometry.process(scan);
+    const Pose truth = drive(0.1, 5.0).inverse() * drive(at_s + 0.1, 5.0);
+    EXPECT_EQ(e.status == TrackingStatus::lost, blind) << "scan " << k;
+    EXPECT_LT((e.T_odom_sensor.translation_m - truth.translation_m).norm(), blind ? 0.2 : 0.05);
+  }
+}
+
+TEST(FeatureImage, TellsGroundFromWalls) {
+  const test::Scene scene = test::yard();
+  const Scan scan = test::still_scan_of(scene, k16, {});
+  standard::FeatureImage image(1024);
+  int ground = 0, structure = 0, wrong = 0;
+  for (const standard::Feature& f : image.build(scan, 1.0, 100.0)) {
+    const bool on_ground = std::abs(static_cast<double>(f.z_m) + 1.5) < 1e-3;
+    const bool said_ground = f.kind == standard::Kind::ground;
+    (said_ground ? ground : structure)++;
+    if (on_ground != said_ground) ++wrong;
+  }
+  EXPECT_GT(ground, 2000);
+  EXPECT_GT(structure, 4000);
+  EXPECT_LT(wrong, (ground + structure) / 100);
+}
+
+TEST(Trajectory, IsTheCubicThroughItsKnots) {
+  standard::Trajectory t;
+  t.span_s = 0.1;
+  t.segments = 2;
+  t.knots = standard::Unknowns::Zero(36);
+  // d(time) = c time^3 in x: knots hold its value and derivative; between them it must come back.
+  const double c = 40.0;
+  for (int k = 0; k <= 2; ++k) {
+    const double time_s = 0.05 * k;
+    t.knots[12 * k + 3] = c * time_s * time_s * time_s;
+    t.knots[12 * k + 9] = 3.0 * c * time_s * time_s;
+  }
+  for (double s = 0.0; s <= 1.0; s += 0.05) {
+    const double time_s = 0.1 * s;
+    EXPECT_NEAR(t.at(s).translation_m.x(), c * time_s * time_s * time_s, 1e-12);
+  }
+  EXPECT_NEAR(t.end_twist().linear_mps.x(), 3.0 * c * 0.01, 1e-9);
+}
+
+}  // namespace
+}  // namespace lilo
