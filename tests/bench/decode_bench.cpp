@@ -59,6 +59,7 @@ void report(benchmark::State& state, std::size_t packets, double sensor_packets_
 void decode(benchmark::State& state, const std::vector<TimedPacket>& packets, double rate) {
   const SensorConfig config = config_for_all();
   std::vector<PacketView> views;
+  views.reserve(packets.size());
   for (const TimedPacket& packet : packets) views.push_back(packet.view());
   Slots slots;
   for (auto _ : state) {
