@@ -21,7 +21,7 @@ struct Return {
   float azimuth_rad;       ///< direction of the beam, counter-clockwise from +x, in [-pi, pi)
   std::int32_t t_ns;       ///< firing time after Scan::start_ns
   std::uint8_t ring;       ///< beam, counted by elevation, 0 = lowest
-  std::uint8_t intensity;  ///< as sent by the sensor
+  std::uint8_t intensity;  ///< as sent by the sensor; HDL-64E: with its focal correction
   ReturnKind kind;
   std::uint8_t reserved = 0;
 };

@@ -8,8 +8,9 @@
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
+#include <exception>
 #include <filesystem>
+#include <string>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -74,8 +75,8 @@ int receive(UdpSource& source, std::uint64_t count) {
 
 }  // namespace
 
-int main(int argument_count, char** arguments) {
-  const double seconds = argument_count > 1 ? std::atof(arguments[1]) : 10.0;  // NOLINT
+int main(int argument_count, char** arguments) try {
+  const double seconds = argument_count > 1 ? std::stod(arguments[1]) : 10.0;
   const auto count = static_cast<std::uint64_t>(seconds * kPacketsPerSecond);
   const auto source = open_udp({.bind_address = "127.0.0.1", .data_port = 0, .position_port = 0});
   std::printf("receive buffer %d bytes\n", source->receive_buffer_bytes());
@@ -88,4 +89,7 @@ int main(int argument_count, char** arguments) {
   const int result = receive(*source, count);
   waitpid(child, nullptr, 0);
   return result;
+} catch (const std::exception& e) {
+  std::fprintf(stderr, "live_loss: %s\n", e.what());
+  return 1;
 }
