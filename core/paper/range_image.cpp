@@ -9,7 +9,7 @@ namespace {
 
 void reset(RangeImage& image, int rows, int columns) {
   image.range_m.create(rows, columns);
-  image.range_m.setTo(0.0F);
+  image.range_m.setTo(0.0);
   image.pixels.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), Pixel{});
 }
 
@@ -26,7 +26,7 @@ float range_of(const Return& r) { return std::sqrt(r.x_m * r.x_m + r.y_m * r.y_m
 
 void project(const Scan& scan, int columns, double min_range_m, double max_range_m,
              RangeImage& image) {
-  reset(image, scan.beams.ring_count, columns);
+  reset(image, std::max(1, scan.beams.ring_count), columns);  // OpenCV takes no empty image
   const auto nearest = static_cast<float>(min_range_m);
   const auto farthest = static_cast<float>(max_range_m);
   for (std::size_t k = 0; k < scan.returns.size(); ++k) {

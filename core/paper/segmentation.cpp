@@ -77,7 +77,7 @@ cv::Mat1b sobel_ground(const cv::Mat1f& range_m, double threshold_m) {
   cv::Mat1b mask(vertical_sobel(range_m) > threshold_m);
   cv::morphologyEx(mask, mask, cv::MORPH_CLOSE,
                    cv::getStructuringElement(cv::MORPH_RECT, cv::Size(3, 3)));
-  mask.setTo(0, range_m <= 0.0F);
+  mask.setTo(0, range_m <= 0.0);
   return mask;
 }
 
@@ -98,7 +98,7 @@ cv::Mat1b segment(const cv::Mat1f& range_m, const PaperConfig& config, int first
   cv::Mat1b labels(range_m.size(), static_cast<uchar>(Label::surface));
   labels.setTo(static_cast<uchar>(Label::edge), edge);
   labels.setTo(static_cast<uchar>(Label::ground), ground);
-  labels.setTo(static_cast<uchar>(Label::empty), range_m <= 0.0F);
+  labels.setTo(static_cast<uchar>(Label::empty), range_m <= 0.0);
   return labels;
 }
 

@@ -149,5 +149,11 @@ TEST(PaperOdometry, AnEmptyScanIsReportedAsLostAndDoesNotMoveThePose) {
   EXPECT_NEAR(e.T_odom_sensor.translation_m.norm(), 0.0, 1e-9);
 }
 
+TEST(PaperOdometry, AScanWithoutBeamsIsNoReasonToThrow) {
+  Odometry odometry(config_16());
+  EXPECT_NO_THROW(odometry.process(Scan{}));
+  EXPECT_NO_THROW(odometry.process(Scan{}));
+}
+
 }  // namespace
 }  // namespace lilo::paper

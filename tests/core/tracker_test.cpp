@@ -115,6 +115,12 @@ TEST(DefaultProfile, EmptyScansAreReportedAndTheMotionGoesOn) {
   }
 }
 
+TEST(DefaultProfile, AScanWithoutBeamsIsNoReasonToThrow) {
+  Odometry odometry{OdometryConfig{}};
+  EXPECT_NO_THROW(odometry.process(Scan{}));
+  EXPECT_NO_THROW(odometry.process(Scan{}));
+}
+
 TEST(FeatureImage, TellsGroundFromWalls) {
   const test::Scene scene = test::yard();
   const Scan scan = test::still_scan_of(scene, k16, {});
