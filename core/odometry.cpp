@@ -40,4 +40,8 @@ Estimate Odometry::process(const Scan& scan, StageHook hook) {
   return std::visit([&](auto& profile) { return profile.process(scan, hook); }, impl_->profile);
 }
 
+std::vector<Eigen::Vector3f> Odometry::map_points() const {
+  return std::visit([](const auto& profile) { return profile.map_points(); }, impl_->profile);
+}
+
 }  // namespace lilo

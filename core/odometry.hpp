@@ -4,7 +4,10 @@
 #include "core/odometry_config.hpp"
 #include "core/scan.hpp"
 
+#include <Eigen/Core>
+
 #include <memory>
+#include <vector>
 
 namespace lilo {
 
@@ -23,7 +26,7 @@ struct StageHook {
 };
 
 /// LiDAR odometry: scans in, poses out. Same scans, same bits out.
-/// Not thread-safe: one thread calls process().
+/// Not thread-safe: one thread calls.
 class Odometry {
  public:
   explicit Odometry(const OdometryConfig& config);
@@ -34,6 +37,10 @@ class Odometry {
   /// Takes the next scan and says where the sensor was at its last firing. Never throws on data:
   /// a scan too poor to align gives the prediction with status `lost`.
   Estimate process(const Scan& scan, StageHook hook = {});
+
+  /// The local map in the odometry frame (m), in no particular order: profile default, the mean of
+  /// every fine cell; paper, both map clouds. Allocates: for saving, not for every scan.
+  [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
  private:
   struct Impl;

@@ -74,6 +74,15 @@ Estimate PaperOdometry::process(const Scan& scan, StageHook hook) {
   return result;
 }
 
+std::vector<Eigen::Vector3f> PaperOdometry::map_points() const {
+  std::vector<Eigen::Vector3f> points_m;
+  points_m.reserve(edge_map_.cloud().size() + surface_map_.cloud().size());
+  for (const LocalMap* map : {&edge_map_, &surface_map_}) {
+    for (const Point& p : map->cloud()) points_m.emplace_back(p.getVector3fMap());
+  }
+  return points_m;
+}
+
 RangeImage PaperOdometry::make_image(const Scan& scan) const {
   RangeImage image;
   project(scan, config_.paper.columns, config_.min_range_m, config_.max_range_m, image);

@@ -17,6 +17,7 @@ class PaperOdometry {
  public:
   explicit PaperOdometry(const OdometryConfig& config);
   Estimate process(const Scan& scan, StageHook hook);
+  [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
  private:
   [[nodiscard]] RangeImage make_image(const Scan& scan) const;

@@ -160,6 +160,15 @@ void CellMap::fit(Cell& cell) const {
   }
 }
 
+void CellMap::append_means(std::vector<Eigen::Vector3f>& points_m) const {
+  for (const std::int32_t at : slots_) {
+    if (at < 0) continue;
+    const Sums& sums = sums_[static_cast<std::size_t>(at)];
+    const Eigen::Vector3d center = center_of(cells_[static_cast<std::size_t>(at)].index);
+    points_m.emplace_back(center.cast<float>() + sums.point / sums.count);
+  }
+}
+
 void CellMap::clear() {
   std::fill(slots_.begin(), slots_.end(), -1);
   cells_.clear();

@@ -51,6 +51,9 @@ class CellMap {
   /// share of the table, so that no single scan pays for it.
   void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
 
+  /// Appends the mean of every cell's own points (m), in no particular order.
+  void append_means(std::vector<Eigen::Vector3f>& points_m) const;
+
   [[nodiscard]] int size() const { return used_; }
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
 

@@ -73,6 +73,15 @@ Estimate Tracker::process(const Scan& scan, StageHook hook) {
   return estimate(scan, solution, chosen);
 }
 
+std::vector<Eigen::Vector3f> Tracker::map_points() const {
+  std::vector<Eigen::Vector3f> points_m;
+  points_m.reserve(static_cast<std::size_t>(maps_.ground_fine.size()) +
+                   static_cast<std::size_t>(maps_.structure_fine.size()));
+  maps_.ground_fine.append_means(points_m);
+  maps_.structure_fine.append_means(points_m);
+  return points_m;
+}
+
 Prior Tracker::predict(const Scan& scan) const {
   constexpr double kUsualSpan_s = 0.1;
   const double duration_s = seconds(scan.end_ns - scan.start_ns);

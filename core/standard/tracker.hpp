@@ -14,6 +14,7 @@ class Tracker {
  public:
   explicit Tracker(const OdometryConfig& config);
   Estimate process(const Scan& scan, StageHook hook);
+  [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
  private:
   [[nodiscard]] Prior predict(const Scan& scan) const;

@@ -110,5 +110,21 @@ TEST(CellMap, RefusesCellsBeyondItsCapacityAndCountsThem) {
   EXPECT_EQ(map.refused(), 15U);
 }
 
+TEST_F(Filled, GivesTheMeanOfEveryCell) {
+  map_.insert({0.1, 0.1, 0.1}, no_reach_);
+  map_.insert({0.3, 0.1, 0.1}, no_reach_);
+  map_.insert({-1000.2, 7.4, 3.1}, no_reach_);
+  std::vector<Eigen::Vector3f> means;
+  map_.append_means(means);
+  ASSERT_EQ(means.size(), 2U);
+  if (means[0].x() < 0.0F) std::swap(means[0], means[1]);
+  EXPECT_LT((means[0] - Eigen::Vector3f(0.2F, 0.1F, 0.1F)).norm(), 1e-5F);
+  EXPECT_LT((means[1] - Eigen::Vector3f(-1000.2F, 7.4F, 3.1F)).norm(), 2e-4F);
+  map_.clear();
+  means.clear();
+  map_.append_means(means);
+  EXPECT_TRUE(means.empty());
+}
+
 }  // namespace
 }  // namespace lilo::standard
