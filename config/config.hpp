@@ -35,6 +35,12 @@ struct SubscribeConfig {
   double lease_s = 5.0;  ///< longest, and the one granted when none is asked for
 };
 
+/// What the daemon keeps.
+struct StateConfig {
+  std::string directory;         ///< empty: systemd's state directory, or none
+  int trajectory_poses = 36000;  ///< poses it remembers, for saving
+};
+
 /// What the daemon says of itself.
 struct HealthConfig {
   bool publish = true;       ///< a datagram a second to all sinks and clients
@@ -57,6 +63,7 @@ struct Config {
   PublishConfig publish;
   SubscribeConfig subscribe;
   HealthConfig health;
+  StateConfig state;
   RealtimeConfig realtime;
 };
 

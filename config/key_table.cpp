@@ -213,6 +213,18 @@ std::vector<Key> health_keys() {
   };
 }
 
+std::vector<Key> state_keys() {
+  return {
+      text("state.directory", LILO_MEMBER(state.directory), kOptionalPath, kRestart,
+           "Folder for what is saved on request (map.pcd, trajectory.tum) and for the calibration "
+           "read from an HDL-64E's packets. Empty: the one systemd gives us, or none."),
+      integer("state.trajectory_poses", LILO_MEMBER(state.trajectory_poses), 0, 10000000, "poses",
+              kRestart,
+              "The latest poses of the session are remembered for a request to save them; 48 bytes "
+              "each. The default is an hour."),
+  };
+}
+
 std::vector<Key> realtime_keys() {
   return {
       integer("realtime.worker_cpu", LILO_MEMBER(realtime.worker_cpu), -1, 1023, "", kRestart,
@@ -247,14 +259,16 @@ std::vector<Section> config_sections() {
        "the base frame's; name that in child_frame_id."},
       {"subscribe", "Who may ask for poses."},
       {"health", "What lilod says of itself."},
+      {"state", "What lilod keeps."},
       {"realtime", "Real-time measures. One that the system refuses is a warning, not an error."},
   };
 }
 
 std::vector<Key> config_keys() {
   std::vector<Key> keys;
-  for (auto section : {sensor_keys, udp_keys, odometry_keys, default_profile_keys, paper_keys,
-                       publish_keys, mount_keys, subscribe_keys, health_keys, realtime_keys}) {
+  for (auto section :
+       {sensor_keys, udp_keys, odometry_keys, default_profile_keys, paper_keys, publish_keys,
+        mount_keys, subscribe_keys, health_keys, state_keys, realtime_keys}) {
     for (Key& key : section()) keys.push_back(std::move(key));
   }
   return keys;

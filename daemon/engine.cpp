@@ -1,5 +1,7 @@
 #include "daemon/engine.hpp"
 
+#include "daemon/saver.hpp"
+
 #include <future>
 #include <optional>
 #include <pthread.h>
@@ -42,6 +44,12 @@ std::thread start_thread(const char* name, int cpu, int priority, std::future<Th
   });
 }
 
+SensorConfig sensor_config(const Config& config) {
+  SensorConfig sensor = config.sensor;
+  sensor.state_directory = state_directory(config.state.directory);
+  return sensor;
+}
+
 ScanRing& prepared(ScanRing& scans, SensorModel model) {
   scans.for_each_slot([=](ScanSlot& slot) { prepare_slot(slot, model); });
   return scans;
@@ -53,7 +61,7 @@ Engine::Engine(const Config& config, std::unique_ptr<PacketSource> source)
     : realtime_(config.realtime),
       scans_(static_cast<std::size_t>(config.realtime.ring_slots)),
       reports_(kReportSlots),
-      receiver_(std::move(source), config.sensor, prepared(scans_, config.sensor.model),
+      receiver_(std::move(source), sensor_config(config), prepared(scans_, config.sensor.model),
                 scan_ready_, counters_),
       worker_(config.odometry, scans_, scan_ready_, reports_, report_ready_, counters_) {}
 
@@ -89,6 +97,20 @@ bool Engine::reset() {
   if (counters_.resets_asked != counters_.resets_done) return false;
   ++counters_.resets_asked;
   return true;
+}
+
+bool Engine::ask_map() {
+  if (map_asked_) return false;
+  map_asked_ = true;
+  ++counters_.maps_asked;
+  scan_ready_.signal();
+  return true;
+}
+
+std::optional<MapCopy> Engine::take_map() {
+  if (!map_asked_ || counters_.maps_asked != counters_.maps_done) return std::nullopt;
+  map_asked_ = false;
+  return std::exchange(worker_.map_copy(), {});
 }
 
 void Engine::stop() {

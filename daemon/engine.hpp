@@ -8,6 +8,7 @@
 #include "daemon/worker.hpp"
 
 #include <memory>
+#include <optional>
 #include <thread>
 
 namespace lilo {
@@ -34,6 +35,11 @@ class Engine {
   /// The next scan starts a new odometry. False while the last one that was asked for has not
   /// begun.
   bool reset();
+  /// The worker will copy its map between two scans and signal report_ready(). False while the
+  /// last copy that was asked for was not taken.
+  bool ask_map();
+  /// The copy, once it is there.
+  std::optional<MapCopy> take_map();
   [[nodiscard]] std::size_t ring_slots() const { return scans_.capacity(); }
   /// Scans that wait or are being processed.
   [[nodiscard]] std::size_t scans_waiting() const { return scans_.size(); }
@@ -47,6 +53,7 @@ class Engine {
   ReportRing reports_;
   Receiver receiver_;
   Worker worker_;
+  bool map_asked_ = false;  // and not yet taken
   std::thread receiver_thread_, worker_thread_;
 };
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <vector>
 
 /// What the three threads hand to each other:
 ///   receiver ==ScanSlot==> worker ==PoseReport==> publisher, and counters that all may read.
@@ -32,6 +33,12 @@ struct PoseReport {
   std::uint64_t worker_minor_faults = 0;  ///< page faults of the thread since its start
 };
 
+/// The odometry's map at one instant, for saving.
+struct MapCopy {
+  std::vector<Eigen::Vector3f> points_m;  ///< in the odometry's own frame
+  std::uint64_t resets = 0;               ///< as in PoseReport: of which odometry
+};
+
 using ScanRing = SpscRing<ScanSlot>;
 using ReportRing = SpscRing<PoseReport>;
 
@@ -45,6 +52,8 @@ struct PipelineCounters {
   std::atomic<std::uint64_t> ring_high_water{0};  ///< receiver: most scans that ever waited
   std::atomic<std::uint64_t> resets_asked{0};     ///< publisher
   std::atomic<std::uint64_t> resets_done{0};      ///< worker
+  std::atomic<std::uint64_t> maps_asked{0};       ///< publisher
+  std::atomic<std::uint64_t> maps_done{0};        ///< worker
   std::atomic<bool> behind{false};                ///< receiver asks, worker answers by skipping
   std::atomic<bool> stop{false};                  ///< publisher asks both to end
 };

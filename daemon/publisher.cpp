@@ -2,6 +2,7 @@
 
 #include "daemon/base_frame.hpp"
 #include "daemon/clock.hpp"
+#include "daemon/map_file.hpp"
 #include "daemon/metrics_file.hpp"
 
 #include <utility>
@@ -16,12 +17,15 @@ Publisher::Publisher(boost::asio::io_context& io, const Config& config, Engine& 
       message_{new_session(), config.publish.frame_id, config.publish.child_frame_id},
       T_base_sensor_(to_pose(config.publish.T_base_sensor)),
       mounted_(!is_identity(config.publish.T_base_sensor)),
+      record_(static_cast<std::size_t>(config.state.trajectory_poses)),
       sinks_(io),
       server_(io, config.subscribe, config.publish,
               {.last_pose = [this] { return last_pose_; },
                .health = [this] { return write_health_now(); },
                .reset = [this](const std::optional<Pose>& start) { return reset(start); },
-               .session = [this]() -> const std::string& { return message_.session; }}) {
+               .save = [this](SaveKind kind, const SaveDone& done) { save(kind, done); },
+               .session = [this]() -> const std::string& { return message_.session; }}),
+      saver_(io) {
   sinks_.set(config.publish.sinks);
 }
 
@@ -29,6 +33,13 @@ void Publisher::configure(const Config& config) {
   config_ = config;
   sinks_.set(config.publish.sinks);
   server_.configure(config.subscribe);
+}
+
+void Publisher::take_reports() {
+  // In this order: the poses before the map are of its session.
+  std::optional<MapCopy> map = engine_.take_map();
+  send_poses();
+  if (map) save_map(std::move(*map));
 }
 
 void Publisher::send_poses() {
@@ -51,6 +62,7 @@ void Publisher::send_pose(const PoseReport& report) {
     ++poses_not_sent_;
   } else {
     broadcast(last_pose_);
+    record_.add(placed.estimate.stamp_ns, pose);
     ++poses_sent_;
   }
   monitor_.add(report, static_cast<double>(now_ns - report.last_packet_ns) * 1e-6);
@@ -68,6 +80,45 @@ void Publisher::begin_session(std::uint64_t resets) {
   message_.session = new_session();
   T_odom_start_ = next_start_.value_or(Pose{});
   next_start_.reset();
+  record_.clear();
+}
+
+void Publisher::save(SaveKind kind, const SaveDone& done) {
+  if (state_directory(config_.state.directory).empty()) {
+    done({.error = "no state directory: set state.directory, or run under systemd"});
+  } else if (map_saved_ || saver_.busy()) {
+    done({.error = "something is being saved"});
+  } else if (kind == SaveKind::trajectory) {
+    save_trajectory(done);
+  } else {
+    map_saved_ = done;
+    engine_.ask_map();
+  }
+}
+
+void Publisher::save_trajectory(const SaveDone& done) {
+  std::vector<RecordedPose> poses = record_.copy();
+  const std::size_t count = poses.size();
+  const std::string comment = "lilod session " + message_.session + ", " + message_.child_frame_id +
+                              " in " + message_.frame_id +
+                              ", older poses forgotten: " + std::to_string(record_.forgotten());
+  saver_.write(
+      state_directory(config_.state.directory) + "/trajectory.tum", count,
+      [poses = std::move(poses), comment] { return to_tum(poses, comment); }, done);
+}
+
+// The points go where the poses of the session are.
+void Publisher::save_map(MapCopy map) {
+  const SaveDone done = std::exchange(map_saved_, {});
+  if (map.resets != resets_) {
+    done({.error = "a reset came in between"});
+    return;
+  }
+  const Pose T_odom_map = T_odom_start_ * T_base_sensor_;
+  const std::size_t count = map.points_m.size();
+  saver_.write(
+      state_directory(config_.state.directory) + "/map.pcd", count,
+      [map = std::move(map), T_odom_map] { return to_pcd(map.points_m, T_odom_map); }, done);
 }
 
 void Publisher::broadcast(std::string_view datagram) {

@@ -4,6 +4,8 @@
 #include "daemon/engine.hpp"
 #include "daemon/health_monitor.hpp"
 #include "daemon/pose_message.hpp"
+#include "daemon/pose_record.hpp"
+#include "daemon/saver.hpp"
 #include "daemon/server.hpp"
 #include "daemon/sinks.hpp"
 
@@ -24,8 +26,8 @@ class Publisher {
   Publisher(boost::asio::io_context& io, const Config& config, Engine& engine,
             HealthMonitor& monitor);
 
-  /// Sends all poses the worker has finished.
-  void send_poses();
+  /// Sends all poses the worker has finished, saves the map it has copied.
+  void take_reports();
   /// Once a second: health, leases.
   void tick();
   /// Takes the keys that may change at run time.
@@ -35,7 +37,11 @@ class Publisher {
   [[nodiscard]] const Health& last_health() const { return health_; }
 
  private:
+  void send_poses();
   void send_pose(const PoseReport& report);
+  void save(SaveKind kind, const SaveDone& done);
+  void save_trajectory(const SaveDone& done);
+  void save_map(MapCopy map);
   void begin_session(std::uint64_t resets);
   bool reset(const std::optional<Pose>& start_pose);
   void broadcast(std::string_view datagram);
@@ -51,12 +57,15 @@ class Publisher {
   std::uint64_t resets_ = 0;
   Pose T_odom_start_;  // where the first pose of the session is
   std::optional<Pose> next_start_;
+  PoseRecord record_;
+  SaveDone map_saved_;  // empty: no map was asked for
   JsonWriter pose_json_, health_json_;
   std::string_view last_pose_;
   Health health_;
   std::uint64_t poses_sent_ = 0, poses_not_sent_ = 0;
   Sinks sinks_;
   Server server_;
+  Saver saver_;
 };
 
 }  // namespace lilo

@@ -15,10 +15,11 @@ struct Kind {
   const char* name;
   RequestKind kind;
 };
-constexpr std::array<Kind, 4> kKinds{{{"subscribe", RequestKind::subscribe},
+constexpr std::array<Kind, 5> kKinds{{{"subscribe", RequestKind::subscribe},
                                       {"unsubscribe", RequestKind::unsubscribe},
                                       {"query", RequestKind::query},
-                                      {"reset", RequestKind::reset}}};
+                                      {"reset", RequestKind::reset},
+                                      {"save", RequestKind::save}}};
 
 ParsedRequest refuse(std::string why) { return {.request = {}, .error = std::move(why)}; }
 
@@ -52,6 +53,12 @@ ParsedRequest read_fields(Request request, const json& body) {
     request.query = body.get<std::string>();
     return {.request = std::move(request), .error = {}};
   }
+  if (request.kind == RequestKind::save) {
+    if (body != "map" && body != "trajectory")
+      return refuse("save: expected \"map\" or \"trajectory\"");
+    request.save = body == "map" ? SaveKind::map : SaveKind::trajectory;
+    return {.request = std::move(request), .error = {}};
+  }
   if (!body.is_object()) return refuse("expected an object, as in {\"subscribe\":{}}");
   if (body.contains("ttl_s")) {
     const auto ttl = numbers<1>(body, {"ttl_s"});
@@ -80,7 +87,7 @@ ParsedRequest parse_request(std::string_view datagram) {
     request.kind = kind.kind;
     return read_fields(std::move(request), object[kind.name]);
   }
-  return refuse("expected subscribe, unsubscribe, query or reset");
+  return refuse("expected subscribe, unsubscribe, query, reset or save");
 }
 
 }  // namespace lilo

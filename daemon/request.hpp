@@ -10,7 +10,10 @@ namespace lilo {
 
 inline constexpr std::size_t kMaxRequestBytes = 512;
 
-enum class RequestKind : std::uint8_t { subscribe, unsubscribe, query, reset };
+enum class RequestKind : std::uint8_t { subscribe, unsubscribe, query, reset, save };
+
+/// What can be saved into the state directory.
+enum class SaveKind : std::uint8_t { map, trajectory };
 
 /// What a client asks for. See PROTOCOL.md.
 struct Request {
@@ -19,6 +22,7 @@ struct Request {
   std::optional<double> ttl_s;     ///< subscribe
   std::string query;               ///< query: "hello", "pose" or "health"
   std::optional<Pose> start_pose;  ///< reset
+  SaveKind save = SaveKind::map;   ///< save
 };
 
 /// Either the request, or why it is none, in one line for the client.

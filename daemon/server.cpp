@@ -117,7 +117,25 @@ void Server::serve(const Request& request) {
       json_.end_object();
       answer(json_.finish());
       return;
+    case RequestKind::save:
+      actions_.save(request.save,
+                    [this, to = from_](const SaveResult& result) { say_saved(result, to); });
+      return;
   }
+}
+
+void Server::say_saved(const SaveResult& result, const Endpoint& to) {
+  if (!result.error.empty()) {
+    say_error(result.error, to);
+    return;
+  }
+  begin(json_);
+  json_.begin_object("done");
+  json_.text("request", "save");
+  json_.text("file", result.file);
+  json_.unsigned_integer("count", result.count);
+  json_.end_object();
+  answer(json_.finish(), to);
 }
 
 void Server::answer_query(const std::string& query) {
@@ -160,17 +178,17 @@ void Server::say_hello(double ttl_s, bool with_token) {
   answer(json_.finish());
 }
 
-void Server::say_error(std::string_view why) {
+void Server::say_error(std::string_view why, const Endpoint& to) {
   begin(json_);
   json_.begin_object("error");
   json_.text("reason", why);
   json_.end_object();
-  answer(json_.finish());
+  answer(json_.finish(), to);
 }
 
-void Server::answer(std::string_view datagram) {
+void Server::answer(std::string_view datagram, const Endpoint& to) {
   --answers_left_;
-  send_to(datagram, from_);
+  send_to(datagram, to);
 }
 
 void Server::send_to(std::string_view datagram, const Endpoint& to) {

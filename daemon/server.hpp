@@ -4,6 +4,7 @@
 #include "daemon/client_table.hpp"
 #include "daemon/json_writer.hpp"
 #include "daemon/request.hpp"
+#include "daemon/saver.hpp"
 #include "daemon/token.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -23,10 +24,12 @@ struct ServerActions {
   std::function<std::string_view()> last_pose;            ///< empty: none yet
   std::function<std::string_view()> health;               ///< as of now
   std::function<bool(const std::optional<Pose>&)> reset;  ///< false: one is under way
+  /// Answers later, or at once when it cannot be.
+  std::function<void(SaveKind, SaveDone)> save;
   std::function<const std::string&()> session;
 };
 
-/// The side of the protocol that listens: subscriptions, queries, resets. One thread.
+/// The side of the protocol that listens: subscriptions, queries, resets, saving. One thread.
 ///
 /// Nobody can turn it against a third party: it answers loopback, and addresses of the allow-list;
 /// those first have to send back a token that only their real owner received. The clients, and the
@@ -55,12 +58,15 @@ class Server {
   void handle(std::string_view datagram);
   void serve(const Request& request);
   void answer_query(const std::string& query);
+  void say_saved(const SaveResult& result, const Endpoint& to);
   [[nodiscard]] bool is_known(const Endpoint& from) const;
   [[nodiscard]] bool is_proven(const Request& request) const;
   void say_hello(double ttl_s, bool with_token);
-  void say_error(std::string_view why);
+  void say_error(std::string_view why) { say_error(why, from_); }
+  void say_error(std::string_view why, const Endpoint& to);
   void begin(JsonWriter& out);
-  void answer(std::string_view datagram);
+  void answer(std::string_view datagram) { answer(datagram, from_); }
+  void answer(std::string_view datagram, const Endpoint& to);
   void send_to(std::string_view datagram, const Endpoint& to);
 
   boost::asio::ip::udp::socket socket_;

@@ -68,7 +68,7 @@ void Service::run() {
   io_.run();
   notify::stopping();
   engine_.stop();
-  publisher_.send_poses();
+  publisher_.take_reports();
   publisher_.tick();
   spdlog::info("{} poses published, {} scans dropped", publisher_.last_health().poses_sent,
                publisher_.last_health().scans_dropped);
@@ -79,7 +79,7 @@ void Service::await_reports() {
                            [this](const error_code& error) {
                              if (error) return;
                              engine_.report_ready().wait();
-                             publisher_.send_poses();
+                             publisher_.take_reports();
                              await_reports();
                            });
 }

@@ -45,6 +45,8 @@ Worker::Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready
 
 void Worker::run() {
   while (!counters_.stop.load(std::memory_order_relaxed)) {
+    const std::uint64_t maps_asked = counters_.maps_asked.load(std::memory_order_acquire);
+    if (maps_asked != counters_.maps_done.load(std::memory_order_relaxed)) copy_map(maps_asked);
     const ScanSlot* slot = scans_.front();
     if (slot == nullptr) {
       scan_ready_.wait();
@@ -56,6 +58,12 @@ void Worker::run() {
     scans_.release();
     if (counters_.behind.exchange(false, std::memory_order_acquire)) skip_to_newest();
   }
+}
+
+void Worker::copy_map(std::uint64_t asked) {
+  map_copy_ = {.points_m = odometry_->map_points(), .resets = resets_};
+  counters_.maps_done.store(asked, std::memory_order_release);
+  report_ready_.signal();
 }
 
 void Worker::begin_again(std::uint64_t resets) {

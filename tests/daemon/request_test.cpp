@@ -24,14 +24,17 @@ TEST(Request, ReadsEveryKind) {
   ASSERT_TRUE(reset.request && reset.request->start_pose);
   EXPECT_EQ(reset.request->start_pose->translation_m, Eigen::Vector3d(1, 2, 3));
   EXPECT_FALSE(parse_request(R"({"reset":{}})").request->start_pose);
+  EXPECT_EQ(parse_request(R"({"save":"map"})").request->save, SaveKind::map);
+  EXPECT_EQ(parse_request(R"({"save":"trajectory"})").request->save, SaveKind::trajectory);
 }
 
 TEST(Request, SaysWhatIsWrong) {
   for (
       const char* bad :
       {"", "x", "[]", "1", "null", "{}", R"({"subscribe":1})", R"({"subscribe":{"ttl_s":"5"}})",
-       R"({"subscribe":{"ttl_s":1e999}})", R"({"query":{}})", R"({"token":5,"query":"pose"})",
-       R"({"reset":{"pose":1}})", R"({"reset":{"pose":{"position":{"x":1,"y":2,"z":3}}}})",
+       R"({"subscribe":{"ttl_s":1e999}})", R"({"query":{}})", R"({"save":{}})",
+       R"({"save":"../map"})", R"({"token":5,"query":"pose"})", R"({"reset":{"pose":1}})",
+       R"({"reset":{"pose":{"position":{"x":1,"y":2,"z":3}}}})",
        R"({"reset":{"pose":{"position":{"x":1,"y":2,"z":3},"orientation":{"x":0,"y":0,"z":0,"w":2}}}})",
        R"({"subscribe":{}} {"subscribe":{}})"}) {
     const auto parsed = parse_request(bad);
