@@ -97,9 +97,10 @@ Prior Tracker::predict(const Scan& scan) const {
   return prior;
 }
 
-/// Aligns the second scan when the sensor moved by `twist` during both: the first one, which alone
-/// makes the map, is straightened by it.
-Solution Tracker::try_start(const std::vector<Feature>& chosen, Prior prior, const Twist& twist) {
+/// Aligns the second scan when the sensor moved by about `twist` during both: the first one, which
+/// alone makes the map, is straightened by it.
+Solution Tracker::try_start(const std::vector<Feature>& chosen, Prior prior, const Twist& twist,
+                            double doubt_mps) {
   Trajectory first;
   first.twist = twist;
   first.span_s = first_span_s_;
@@ -108,6 +109,7 @@ Solution Tracker::try_start(const std::vector<Feature>& chosen, Prior prior, con
   maps_.clear();
   insert(first_features_, first);
   prior.twist = twist;
+  prior.begin_information.diagonal().segment<2>(9).setConstant(1.0 / (doubt_mps * doubt_mps));
   return solver_.solve(chosen, maps_, prior);
 }
 
@@ -118,21 +120,27 @@ Solution Tracker::start(const std::vector<Feature>& chosen, const Prior& prior) 
   constexpr double kClearlyBetter = 1.05;
   constexpr int kMaxRounds = 15, kHeadings = 8;
   constexpr double kSpeedEnough_mps = 0.02;
-  Solution best = try_start(chosen, prior, {});
+  // An open field hardly says how fast one goes; a robot that is switched on mostly stands.
+  constexpr double kStanding_mps = 0.5, kMoving_mps = 3.0;
+  double doubt_mps = kStanding_mps;
+  Solution best = try_start(chosen, prior, {}, doubt_mps);
   for (const double speed_mps : {6.0, 12.0, 18.0, 24.0, 30.0}) {
     for (int k = 0; k < kHeadings; ++k) {
       const double heading_rad = 2.0 * std::numbers::pi * k / kHeadings;
       Twist twist;
       twist.linear_mps = {speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad),
                           0.0};
-      const Solution other = try_start(chosen, prior, twist);
-      if (other.inliers > kClearlyBetter * best.inliers) best = other;
+      const Solution other = try_start(chosen, prior, twist, kMoving_mps);
+      if (other.inliers > kClearlyBetter * best.inliers) {
+        best = other;
+        doubt_mps = kMoving_mps;
+      }
     }
   }
   for (int round = 0; round < kMaxRounds; ++round) {
     const Twist twist = twist_between({}, best.trajectory.end(), prior.span_s);
     const double change_mps = (twist.linear_mps - best.trajectory.twist.linear_mps).norm();
-    best = try_start(chosen, prior, twist);
+    best = try_start(chosen, prior, twist, doubt_mps);
     if (change_mps < kSpeedEnough_mps) break;
   }
   first_features_ = {};

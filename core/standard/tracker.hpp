@@ -18,7 +18,8 @@ class Tracker {
 
  private:
   [[nodiscard]] Prior predict(const Scan& scan) const;
-  Solution try_start(const std::vector<Feature>& chosen, Prior prior, const Twist& twist);
+  Solution try_start(const std::vector<Feature>& chosen, Prior prior, const Twist& twist,
+                     double doubt_mps);
   Solution start(const std::vector<Feature>& chosen, const Prior& prior);
   void accept(const Scan& scan, const Prior& prior, const Solution& solution);
   void grow_map(const std::vector<Feature>& features, const Trajectory& trajectory);
