@@ -41,6 +41,13 @@ struct StateConfig {
   int trajectory_poses = 36000;  ///< poses it remembers, for saving
 };
 
+enum class LogLevel : std::uint8_t { debug, info, warning, error };
+
+/// What goes to the journal.
+struct LogConfig {
+  LogLevel level = LogLevel::info;  ///< this and worse
+};
+
 /// What the daemon says of itself.
 struct HealthConfig {
   bool publish = true;       ///< a datagram a second to all sinks and clients
@@ -52,8 +59,8 @@ struct RealtimeConfig {
   int worker_cpu = -1;       ///< pin the worker here; -1: do not pin
   int worker_priority = 0;   ///< SCHED_FIFO priority; 0: the normal policy
   bool lock_memory = false;  ///< mlockall
-  int reserve_mb = 32;       ///< heap held beforehand when memory is locked
-  int ring_slots = 8;        ///< scans the ring can hold
+  int reserve_mb = 8;        ///< heap held beforehand when memory is locked
+  int ring_slots = 4;        ///< scans the ring can hold
 };
 
 struct Config {
@@ -63,6 +70,7 @@ struct Config {
   PublishConfig publish;
   SubscribeConfig subscribe;
   HealthConfig health;
+  LogConfig log;
   StateConfig state;
   RealtimeConfig realtime;
 };

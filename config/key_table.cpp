@@ -213,6 +213,14 @@ std::vector<Key> health_keys() {
   };
 }
 
+std::vector<Key> log_keys() {
+  return {
+      choice("log.level", LILO_MEMBER(log.level), {"debug", "info", "warning", "error"}, kLive,
+             "What goes to stderr, which is systemd's journal: this and worse. More than 50 lines "
+             "in 10 s are left out and counted."),
+  };
+}
+
 std::vector<Key> state_keys() {
   return {
       text("state.directory", LILO_MEMBER(state.directory), kOptionalPath, kRestart,
@@ -259,6 +267,7 @@ std::vector<Section> config_sections() {
        "the base frame's; name that in child_frame_id."},
       {"subscribe", "Who may ask for poses."},
       {"health", "What lilod says of itself."},
+      {"log", "What lilod writes to the journal."},
       {"state", "What lilod keeps."},
       {"realtime", "Real-time measures. One that the system refuses is a warning, not an error."},
   };
@@ -268,7 +277,7 @@ std::vector<Key> config_keys() {
   std::vector<Key> keys;
   for (auto section :
        {sensor_keys, udp_keys, odometry_keys, default_profile_keys, paper_keys, publish_keys,
-        mount_keys, subscribe_keys, health_keys, state_keys, realtime_keys}) {
+        mount_keys, subscribe_keys, health_keys, log_keys, state_keys, realtime_keys}) {
     for (Key& key : section()) keys.push_back(std::move(key));
   }
   return keys;

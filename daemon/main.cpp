@@ -37,7 +37,7 @@ int run(const Options& options) {
   if (options.print_config) std::cout << print_config(config);
   if (options.check_config) std::cout << options.config_path << ": ok\n";
   if (options.print_config || options.check_config) return kSuccess;
-  start_log();
+  start_log(config.log.level);
   Service(config, options.config_path).run();
   return kSuccess;
 }

@@ -1,6 +1,8 @@
 #include "daemon/service.hpp"
 
 #include "config/key.hpp"
+#include "daemon/clock.hpp"
+#include "daemon/log.hpp"
 #include "daemon/notify.hpp"
 #include "daemon/pose_message.hpp"
 
@@ -126,6 +128,7 @@ void Service::apply(const Config& read) {
     }
   }
   publisher_.configure(config_);
+  set_log_level(config_.log.level);
   spdlog::info("{} read again, {} key(s) differ", config_path_, differing.size());
 }
 
@@ -143,13 +146,16 @@ void Service::supervise() {
   publisher_.tick();
   const Health& h = publisher_.last_health();
   const std::string words = in_words(h);
-  if (words != status_) notify::status(words);
+  if (words != status_) {
+    notify::status(words);
+    spdlog::debug("{}", words);
+  }
   status_ = words;
 
   const std::uint64_t problems = h.driver.packets_lost + h.driver.malformed_packets +
                                  h.source.kernel_dropped + h.scans_dropped + h.poses_not_sent +
                                  h.send_errors;
-  if (problems == problems_logged_) return;
+  if (problems == problems_logged_ || !problem_lines_.take(monotonic_ns())) return;
   problems_logged_ = problems;
   spdlog::warn(
       "packets lost {} (by the kernel {}), malformed {}; scans dropped {}; poses not sent {}; send "

@@ -3,6 +3,7 @@
 #include "config/config.hpp"
 #include "daemon/engine.hpp"
 #include "daemon/health_monitor.hpp"
+#include "daemon/line_budget.hpp"
 #include "daemon/publisher.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -47,6 +48,7 @@ class Service {
   std::string status_;
   std::uint64_t processed_at_last_look_ = 0;
   std::uint64_t problems_logged_ = 0;
+  LineBudget problem_lines_{1, 10'000'000'000};  // they are totals: one line says all since
 };
 
 }  // namespace lilo

@@ -39,6 +39,37 @@ TEST(Reload, TakesWhatCanChangeAndNamesTheRest) {
   EXPECT_NE(log.find("publish.frame_id: \"elsewhere\" needs a restart"), std::string::npos) << log;
 }
 
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++found;
+  return found;
+}
+
+TEST(Log, ItsLevelChangesWhileItRuns) {
+  Lilod lilod("log:\n  level: error\n");
+  ASSERT_TRUE(lilod.wait_ready());
+  EXPECT_EQ(lilod.process().standard_error(), "");
+  change_config(lilod, "level: error", "level: info");
+  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
+  EXPECT_EQ(lilod.stop(), 0);
+  EXPECT_EQ(count(lilod.process().standard_error(), "stopping on signal"), 1U);
+}
+
+// Whoever can make it log cannot fill the disk: a hundred reloads of a bad file.
+TEST(Log, RepeatsAreLeftOutAndCounted) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  change_config(lilod, "publish:", "publisch:");
+  for (int k = 0; k < 100; ++k) {
+    ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
+    lilod.process().signal(SIGHUP);
+  }
+  const std::string log = lilod.process().standard_error();
+  EXPECT_GE(count(log, "did you mean publish?"), 3U);
+  EXPECT_LE(count(log, "\n"), 150U) << "of 200; 50 in 10 s";
+}
+
 TEST(Reload, ABadFileChangesNothing) {
   Lilod lilod;
   ASSERT_TRUE(lilod.wait_ready());
