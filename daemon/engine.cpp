@@ -13,7 +13,7 @@ namespace lilo {
 namespace {
 
 constexpr std::size_t kReportSlots = 64;  // 6 s of poses while the publisher is held up
-constexpr std::size_t kThreadStackBytes = 2 << 20;
+constexpr std::size_t kThreadStackBytes = 1 << 20;
 
 /// What a thread tells of itself before it starts work.
 struct ThreadStart {

@@ -86,7 +86,8 @@ void Receiver::run() {
 // The scan just written goes to the worker, and the next free slot is written. With all slots
 // taken, the spare one is written instead and the worker told; should it still be at work when the
 // spare is full too, that scan is given up.
-Scan& Receiver::exchange(Scan&) {
+Scan& Receiver::exchange(Scan& finished) {
+  most_returns_ = std::max(most_returns_, finished.returns.size());
   share_counts();
   add(counters_.scans_received);
   writing_->last_packet_ns = last_packet_ns_.load(std::memory_order_relaxed);
@@ -108,14 +109,17 @@ Scan& Receiver::exchange(Scan&) {
     writing_ = &spare_;
   }
   writing_->scan.clear();
+  // What the largest scan so far needed: one that has to grow by itself would double.
+  if (writing_->scan.returns.capacity() < most_returns_)
+    writing_->scan.returns.reserve(most_returns_ + most_returns_ / 32);
   return writing_->scan;
 }
 
 void prepare_slot(ScanSlot& slot, SensorModel model) {
-  // One return a firing at 10 Hz: 28 928 and 133 333. What dual returns or a slower head need more,
-  // a slot takes in its first turn and keeps.
+  // One return a firing at 10 Hz: 28 928 and 133 333. What an unknown model, dual returns or a
+  // slower head need more, the slots take in their first turn and keep.
   constexpr std::size_t kVlp16Returns = 32'000, kHdl64eReturns = 140'000;
-  slot.scan.returns.resize(model == SensorModel::vlp16 ? kVlp16Returns : kHdl64eReturns);
+  slot.scan.returns.resize(model == SensorModel::hdl64e ? kHdl64eReturns : kVlp16Returns);
   slot.scan.clear();
 }
 

@@ -50,6 +50,7 @@ class Receiver : private ScanSink {
   PipelineCounters& counters_;
   ScanSlot spare_;
   ScanSlot* writing_;
+  std::size_t most_returns_ = 0;  // of any scan
   std::atomic<std::int64_t> last_packet_ns_{0};
   SharedDriverCounts driver_counts_;
   ScanBuilder builder_;
