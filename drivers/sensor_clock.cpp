@@ -12,6 +12,7 @@ constexpr std::int64_t kHourNs = 3600 * kSecondNs;
 constexpr std::int64_t kSynchronizedNs = kSecondNs / 2;
 constexpr std::int64_t kGpsLifetimeNs = 60 * kSecondNs;
 constexpr std::int64_t kSilenceNs = 60 * kSecondNs;  // from here the computer's clock counts hours
+constexpr std::int64_t kContinuedNs = 100'000'000;   // no silence at all
 constexpr std::int64_t kDeadBandNs = 2'000'000;
 constexpr std::int64_t kSlewNs = 10'000;           // a scan: 1e-4 at 600 rpm
 constexpr std::int64_t kAstrayNs = kSecondNs / 2;  // the computer's clock was set
@@ -27,12 +28,12 @@ std::int64_t nearest_hour(std::int64_t past_hour_ns, std::int64_t reference_ns) 
 
 std::int64_t SensorClock::unwrap(std::uint32_t stamp_us, std::int64_t received_ns) {
   const std::int64_t past_hour_ns = std::int64_t{stamp_us} * 1000;
-  std::int64_t reference_ns = received_ns;
-  if (started_) {
-    const std::int64_t silence_ns = received_ns - last_received_ns_;
-    reference_ns = last_line_ns_ + (silence_ns > kSilenceNs ? silence_ns : 0);
-  }
-  const std::int64_t line_ns = nearest_hour(past_hour_ns, reference_ns);
+  std::int64_t line_ns = nearest_hour(past_hour_ns, started_ ? last_line_ns_ : received_ns);
+  const std::int64_t silence_ns = received_ns - last_received_ns_;
+  // A stamp that just continues means that the computer's clock was set, by whole hours perhaps: a
+  // silence would have to end within this of a whole hour.
+  if (started_ && silence_ns > kSilenceNs && std::abs(line_ns - last_line_ns_) > kContinuedNs)
+    line_ns = nearest_hour(past_hour_ns, last_line_ns_ + silence_ns);
   started_ = true;
   last_line_ns_ = line_ns;
   last_received_ns_ = received_ns;

@@ -69,6 +69,15 @@ TEST(SensorClock, SilenceOfHoursIsCountedByTheHost) {
   EXPECT_EQ(b - a, 3 * kHourNs + kSecondNs);
 }
 
+TEST(SensorClock, AStepOfTheHostClockByHoursIsNoSilence) {
+  for (const std::int64_t hours : {-1, 1, 5}) {
+    SensorClock clock;
+    const std::int64_t a = clock.unwrap(1'000'000, kHour + kSecondNs);
+    const std::int64_t b = clock.unwrap(1'001'327, kHour + hours * kHourNs + kSecondNs + 1'327'000);
+    EXPECT_EQ(b - a, 1'327'000) << hours;
+  }
+}
+
 TEST(SensorClock, AStepOfTheHostClockDoesNotMoveStampsOfAScan) {
   SensorClock clock;
   const std::int64_t first = clock.unwrap(1'000'000, kHour + kSecondNs);
