@@ -51,6 +51,8 @@ class PcapScans final : public ScanSource, private ScanSink {
     while (finished_ == nullptr) {
       PacketView packet;
       if (packets_->read(packet, std::chrono::milliseconds(0)) != ReadResult::packet) return false;
+      if (received_.first_ns == 0) received_.first_ns = packet.received_ns;
+      received_.last_ns = packet.received_ns;
       builder_.feed(packet);
     }
     std::swap(scan, *std::exchange(finished_, nullptr));
@@ -59,6 +61,7 @@ class PcapScans final : public ScanSource, private ScanSink {
   [[nodiscard]] DriverCounts driver_counts() const override { return builder_.counts(); }
   [[nodiscard]] SourceCounts source_counts() const override { return packets_->counts(); }
   [[nodiscard]] SensorStatus sensor_status() const override { return builder_.status(); }
+  [[nodiscard]] ReceivedSpan received() const override { return received_; }
   [[nodiscard]] double progress() const override { return packets_->progress(); }
   [[nodiscard]] std::string error() const override { return packets_->error(); }
 
@@ -70,6 +73,7 @@ class PcapScans final : public ScanSource, private ScanSink {
   }
 
   std::unique_ptr<PacketSource> packets_;
+  ReceivedSpan received_;
   Scan scans_[2];
   Scan* finished_ = nullptr;
   ScanBuilder builder_;

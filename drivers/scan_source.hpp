@@ -4,10 +4,16 @@
 #include "drivers/scan_builder.hpp"
 #include "drivers/sensor_config.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
 namespace lilo {
+
+/// When the first and the last packet read so far were captured, by the capturing computer's clock.
+struct ReceivedSpan {
+  std::int64_t first_ns = 0, last_ns = 0;  ///< UTC; 0 while there is none
+};
 
 /// Scans of a recording, as fast as they can be read. The revolutions at both ends of a pcap that
 /// were not recorded whole are left out: the first scan is the first complete revolution.
@@ -24,6 +30,8 @@ class ScanSource {
   [[nodiscard]] virtual SourceCounts source_counts() const = 0;
   /// What the capture says of the sensor; nothing for data sets.
   [[nodiscard]] virtual SensorStatus sensor_status() const { return {}; }
+  /// Of the capture's packets; nothing for data sets.
+  [[nodiscard]] virtual ReceivedSpan received() const { return {}; }
   /// Part of the recording already read, in [0, 1]; 0 where that cannot be known.
   [[nodiscard]] virtual double progress() const = 0;
   /// Why the recording ended early, one line for the user; empty while nothing is wrong.

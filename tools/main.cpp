@@ -1,4 +1,5 @@
 #include "tools/eval/eval_command.hpp"
+#include "tools/info/info_command.hpp"
 #include "tools/listen/listen_command.hpp"
 #include "tools/plot/plot_command.hpp"
 #include "tools/replay/replay_command.hpp"
@@ -19,6 +20,7 @@ int run(int argc, char** argv) {
   CLI::App app{"lilo: the lilod toolbox", "lilo"};
   app.set_version_flag("--version", "lilo " LILO_VERSION);
   app.require_subcommand(1);
+  lilo::add_info_command(app);
   lilo::add_run_command(app);
   lilo::add_eval_command(app);
   lilo::add_plot_command(app);
