@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+namespace lilo {
+
+/// Draws a chart: writes `script` to `folder`/`name`.gp, where it can be changed and run again, and
+/// runs gnuplot on it in that folder. Throws std::runtime_error, one line, when gnuplot is missing
+/// or does not like the script.
+void run_gnuplot(const std::string& folder, const std::string& name, const std::string& script);
+
+/// The lines every chart begins with: a PNG of that size in pixels, CSV input, quiet axes on white.
+std::string gnuplot_head(const std::string& png, int width, int height);
+
+/// A string for gnuplot, in double quotes, without its markup.
+std::string gnuplot_text(const std::string& text);
+
+}  // namespace lilo
