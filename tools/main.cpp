@@ -1,3 +1,4 @@
+#include "tools/bench/bench_command.hpp"
 #include "tools/eval/eval_command.hpp"
 #include "tools/info/info_command.hpp"
 #include "tools/listen/listen_command.hpp"
@@ -23,6 +24,7 @@ int run(int argc, char** argv) {
   lilo::add_info_command(app);
   lilo::add_run_command(app);
   lilo::add_eval_command(app);
+  lilo::add_bench_command(app);
   lilo::add_plot_command(app);
   lilo::add_replay_command(app);
   lilo::add_listen_command(app);

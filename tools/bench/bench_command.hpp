@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace lilo {
+
+/// `lilo bench`: times of the two profiles, paired; `lilo bench paper`: the paper's experiments.
+void add_bench_command(CLI::App& app);
+
+}  // namespace lilo

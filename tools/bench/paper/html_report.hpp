@@ -1,0 +1,23 @@
+#pragma once
+
+#include "tools/bench/paper/charts.hpp"
+#include "tools/csv.hpp"
+
+namespace lilo::paper_bench {
+
+/// A table of the report.
+struct ReportTable {
+  std::string title, note;
+  std::string file;  ///< the same as CSV
+  CsvTable table;
+};
+
+/// One HTML page with everything in it: it needs no other file and no network. Pictures are read
+/// from `folder`. Throws std::runtime_error.
+std::string html_report(const std::string& folder, const std::string& summary,
+                        const std::vector<ReportTable>& tables, const std::vector<Chart>& charts);
+
+/// Text with &, <, > and quotes made harmless.
+std::string html_text(const std::string& text);
+
+}  // namespace lilo::paper_bench
