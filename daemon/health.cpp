@@ -133,6 +133,7 @@ const char* to_string(ClockSource clock) {
 std::vector<std::string_view> complaints(const Health& h) {
   std::vector<std::string_view> out;
   if (h.sensor_silent_s > kSilentAfterS) out.emplace_back("sensor silent");
+  if (h.calibration_progress < 1.0) out.emplace_back("waiting for the calibration");
   if (h.status == TrackingStatus::lost) out.emplace_back("lost");
   if (h.status == TrackingStatus::degraded) out.emplace_back("degraded");
   if (h.driver.packets_lost > 0) out.emplace_back("packets lost");

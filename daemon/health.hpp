@@ -22,6 +22,8 @@ struct Health {
   ClockSource clock = ClockSource::host;
   double sensor_silent_s = 0.0;  ///< since the last packet; since the start when there was none
 
+  double calibration_progress = 1.0;  ///< below 1: waiting for the table of an HDL-64E
+
   DriverCounts driver;
   SourceCounts source;
   std::uint64_t scans_processed = 0, scans_dropped = 0;

@@ -57,6 +57,7 @@ Health HealthMonitor::collect(const PublisherCounts& published) {
   h.clock = clock_;
   h.sensor_silent_s =
       static_cast<double>(now_ns - (last_packet_ns > 0 ? last_packet_ns : start_ns_)) * 1e-9;
+  h.calibration_progress = engine_.receiver().calibration_progress();
   h.driver = engine_.receiver().driver_counts().driver();
   h.source = engine_.receiver().driver_counts().source();
   h.scans_processed = counters.scans_processed;

@@ -69,13 +69,26 @@ Receiver::Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sen
   prepare_slot(spare_, sensor.model);
 }
 
+void Receiver::share_counts() {
+  driver_counts_.store(builder_.counts(), source_->counts());
+  const SensorStatus& status = builder_.status();
+  const bool waiting =
+      status.model == SensorModel::hdl64e && status.calibration == CalibrationOrigin::none;
+  calibration_progress_.store(waiting ? std::min(status.calibration_progress, 0.99) : 1.0,
+                              std::memory_order_relaxed);
+}
+
 void Receiver::run() {
+  // Without scans (no calibration yet, a stopped motor) the counts are shared all the same.
+  constexpr std::uint32_t kShareEvery = 512;
+  std::uint32_t packets = 0;
   PacketView packet;
   while (!counters_.stop.load(std::memory_order_relaxed)) {
     const ReadResult result = source_->read(packet, kReadTimeout);
     if (result == ReadResult::packet) {
       last_packet_ns_.store(arrival_ns(packet), std::memory_order_relaxed);
       builder_.feed(packet);
+      if (++packets % kShareEvery == 0) share_counts();
     } else {
       share_counts();
       if (result == ReadResult::end) return;

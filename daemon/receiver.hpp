@@ -39,10 +39,13 @@ class Receiver : private ScanSink {
   [[nodiscard]] const SharedDriverCounts& driver_counts() const { return driver_counts_; }
   /// Any thread: monotonic time of the last packet that was read; 0: none yet.
   [[nodiscard]] std::int64_t last_packet_ns() const { return last_packet_ns_.load(); }
+  /// Any thread: part of the calibration table read so far, in [0, 1), while an HDL-64E cannot be
+  /// used for want of it; 1 otherwise.
+  [[nodiscard]] double calibration_progress() const { return calibration_progress_.load(); }
 
  private:
   Scan& exchange(Scan& finished) override;
-  void share_counts() { driver_counts_.store(builder_.counts(), source_->counts()); }
+  void share_counts();
 
   std::unique_ptr<PacketSource> source_;
   ScanRing& scans_;
@@ -52,6 +55,7 @@ class Receiver : private ScanSink {
   ScanSlot* writing_;
   std::size_t most_returns_ = 0;  // of any scan
   std::atomic<std::int64_t> last_packet_ns_{0};
+  std::atomic<double> calibration_progress_{1.0};
   SharedDriverCounts driver_counts_;
   ScanBuilder builder_;
 };

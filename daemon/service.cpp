@@ -34,6 +34,10 @@ void log_report(const RealtimeReport& report) {
 }
 
 std::string in_words(const Health& h) {
+  if (h.calibration_progress < 1.0) {
+    return fmt::format("waiting for the calibration in the sensor's packets, {:.0f} %",
+                       100.0 * h.calibration_progress);
+  }
   if (h.rate_hz < 0.5) return h.driver.data_packets == 0 ? "waiting for the sensor" : "no scans";
   return fmt::format("{} {:.0f} Hz, packets lost {}, scans dropped {}", to_string(h.status),
                      h.rate_hz, h.driver.packets_lost, h.scans_dropped);
@@ -150,6 +154,7 @@ void Service::supervise() {
     notify::status(words);
     spdlog::debug("{}", words);
   }
+  if (h.calibration_progress < 1.0) spdlog::info("{}", words);
   status_ = words;
 
   const std::uint64_t problems = h.driver.packets_lost + h.driver.malformed_packets +

@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace lilo {
@@ -59,6 +61,36 @@ TEST(Receiver, FullRingIsCountedAndToldToTheWorker) {
   EXPECT_EQ(scans.size(), 3U);
   EXPECT_TRUE(counters.behind);
   EXPECT_EQ(counters.scans_received, scans.size() + counters.scans_overrun);
+}
+
+/// The first packets of another source.
+class FirstPackets : public PacketSource {
+ public:
+  FirstPackets(std::unique_ptr<PacketSource> source, int packets)
+      : source_(std::move(source)), left_(packets) {}
+  ReadResult read(PacketView& packet, std::chrono::milliseconds timeout) override {
+    return left_-- > 0 ? source_->read(packet, timeout) : ReadResult::end;
+  }
+  [[nodiscard]] SourceCounts counts() const override { return source_->counts(); }
+
+ private:
+  std::unique_ptr<PacketSource> source_;
+  int left_;
+};
+
+// The table takes 4160 packets; 2000 bring about half of it, and no scan.
+TEST(Receiver, SaysHowMuchOfTheCalibrationItHas) {
+  const std::string capture = std::string(LILO_DATA_DIR) + "/sim_hdl64_town/data.pcap";
+  if (!std::filesystem::exists(capture)) GTEST_SKIP() << capture << " is not here";
+  ScanRing scans(4);
+  Wakeup ready(Wakeup::Mode::blocking);
+  PipelineCounters counters;
+  Receiver receiver(std::make_unique<FirstPackets>(open_pcap(capture), 2000),
+                    {.model = SensorModel::hdl64e}, scans, ready, counters);
+  EXPECT_EQ(receiver.calibration_progress(), 1.0);
+  receiver.run();
+  EXPECT_EQ(scans.size(), 0U);
+  EXPECT_NEAR(receiver.calibration_progress(), 2000.0 / 4160.0, 0.1);
 }
 
 /// A source that lets the test act as the worker in the middle of the stream.
