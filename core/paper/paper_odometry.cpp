@@ -39,6 +39,15 @@ Reduced deskew_all(const Reduced& raw, const Twist& twist, double duration_s) {
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
+/// Since the scan before. Longer than a few seconds, and either the clock was set or the sensor was
+/// off: then there is no reason to have moved on for all of it.
+double time_since(std::int64_t last_end_ns, const Scan& scan) {
+  constexpr double kLongestGap_s = 5.0;
+  const double dt_s = seconds(scan.end_ns - last_end_ns);
+  const double turn_s = seconds(scan.end_ns - scan.start_ns);
+  return dt_s > 0.0 && dt_s <= kLongestGap_s ? dt_s : turn_s;
+}
+
 }  // namespace
 
 PaperOdometry::PaperOdometry(const OdometryConfig& config)
@@ -48,7 +57,7 @@ PaperOdometry::PaperOdometry(const OdometryConfig& config)
 
 Estimate PaperOdometry::process(const Scan& scan, StageHook hook) {
   const double duration_s = scan.motion_compensated ? 0.0 : seconds(scan.end_ns - scan.start_ns);
-  const double dt_s = seconds(scan.end_ns - last_end_ns_);
+  const double dt_s = time_since(last_end_ns_, scan);
 
   const RangeImage image = make_image(scan);
   hook(Stage::project);

@@ -90,7 +90,10 @@ Prior Tracker::predict(const Scan& scan) const {
   // Returns that were compensated all belong to the end: the trajectory reaches back to the last.
   prior.span_s = scan.motion_compensated ? since_s : duration_s;
   if (prior.span_s <= 0.0) prior.span_s = kUsualSpan_s;
-  const double gap_s = std::max(0.0, since_s - prior.span_s);
+  // Longer, and either the clock was set or the sensor was off: no reason to have moved on.
+  constexpr double kLongestGap_s = 5.0;
+  const double unseen_s = since_s - prior.span_s;
+  const double gap_s = unseen_s > kLongestGap_s ? 0.0 : std::max(0.0, unseen_s);
   prior.T_begin = moved(T_odom_sensor_, twist_, gap_s);
   prior.twist = twist_;
   prior.begin_information = solver_.propagated(information_, gap_s);

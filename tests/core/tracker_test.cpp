@@ -156,5 +156,26 @@ TEST(Trajectory, IsTheCubicThroughItsKnots) {
   EXPECT_NEAR(t.end_twist().linear_mps.x(), 3.0 * c * 0.01, 1e-9);
 }
 
+// The computer's clock is set while the robot drives: stamps jump, the sensor did not.
+TEST(DefaultProfile, AStepOfTheClockBendsNothing) {
+  for (const Profile profile : {Profile::standard, Profile::paper}) {
+    OdometryConfig config;
+    config.profile = profile;
+    Odometry steady(config), stepped(config);
+    for (std::uint64_t k = 0; k < 16; ++k) {
+      Scan scan = test::scan_of(
+          test::yard(), k16, 900,
+          [&](double s) { return drive(0.1 * (static_cast<double>(k) + s), 6.0); }, k);
+      const Pose expected = steady.process(scan).T_odom_sensor;
+      const std::int64_t step_ns = k < 6 ? 0 : k < 11 ? 3'600'000'000'000 : -1'800'000'000'000;
+      scan.start_ns += step_ns;
+      scan.end_ns += step_ns;
+      const Pose error = expected.inverse() * stepped.process(scan).T_odom_sensor;
+      EXPECT_LT(error.translation_m.norm(), 0.02) << "scan " << k;
+      EXPECT_LT(so3_log(error.rotation).norm(), 0.002) << "scan " << k;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lilo
