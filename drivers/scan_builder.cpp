@@ -154,6 +154,7 @@ bool ScanBuilder::Impl::feed_hdl64e(DataPacket data, std::uint32_t stamp_us,
   if (!hdl64e.load(data, line_ns)) return false;
   if (!hdl64e.times_known()) {
     ++counts.waiting_packets;
+    sequence.restart_at(line_ns, received_ns);  // or those that waited would count as lost
     return true;
   }
   const auto verdict = sort(hdl64e.decoder(), stamp_us, received_ns, line_ns);

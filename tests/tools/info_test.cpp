@@ -149,6 +149,18 @@ TEST_F(SimulatedCapture, Hdl64eTellsItsTableAndModel) {
   EXPECT_EQ(json["calibration"]["origin"], "packets");
 }
 
+TEST_F(SimulatedCapture, Hdl64eLosesNothingByMeasuringItsTimingAgainAfterARestart) {
+  options_.sensor.sensor = sim::Sensor::hdl64_s2;
+  options_.sensor.gps = false;  // its clock starts at 0 again
+  options_.motion.duration_s = 2.5;
+  options_.faults.restart_at_s = 1.0;
+  options_.faults.restart_gap_s = 0.5;
+  const RecordingInfo info = make();
+  EXPECT_EQ(info.driver_counts.sensor_restarts, 1U);
+  EXPECT_EQ(info.driver_counts.packets_lost, 0U);  // what a silent sensor does not send
+  EXPECT_EQ(info.driver_counts.data_packets, summary_.packets_sent - summary_.faults.lost);
+}
+
 TEST_F(SimulatedCapture, BrokenEndIsToldWithWhatCameBefore) {
   (void)make();
   std::filesystem::resize_file(capture(), std::filesystem::file_size(capture()) / 2);
