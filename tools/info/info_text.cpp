@@ -171,7 +171,8 @@ std::string losses_text(const RecordingInfo& info) {
               [](const ScanLoss& a, const ScanLoss& b) { return a.scan < b.scan; });
   }
   std::string where = fmt::format("in {} of {}", info.losses.size(), plural(info.scans, "scan"));
-  if (info.lost_outside_scans > 0) where += fmt::format(", {} outside", info.lost_outside_scans);
+  if (info.lost_outside_scans > 0)
+    where += fmt::format(", {} outside of scans", info.lost_outside_scans);
   if (info.late_for_scan > 0) where += fmt::format(", {} came too late", info.late_for_scan);
   if (shown.size() < info.losses.size()) where += "; most in these (all: --json)";
   std::string text = line("losses", where);
