@@ -70,7 +70,7 @@ set datafile missing ""
 set border 3 linecolor rgb "#404040"
 set tics nomirror out
 set grid ytics back linecolor rgb "#d8d8d8" linewidth 1 dashtype 1
-set key top left outside horizontal samplen 2
+set key top left outside horizontal samplen 2 noenhanced
 )",
                      width, height, gnuplot_text(png));
 }

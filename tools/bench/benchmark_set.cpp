@@ -100,4 +100,9 @@ std::vector<BenchmarkSet> find_sets_with_truth(const std::vector<std::string>& p
   return sets;
 }
 
+Trajectory read_truth(const std::string& path) {
+  if (!fs::is_directory(path)) return read_trajectory(path);
+  return *find_sets_with_truth({path}).front().truth;
+}
+
 }  // namespace lilo

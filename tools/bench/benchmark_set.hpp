@@ -25,4 +25,7 @@ std::vector<BenchmarkSet> find_sets(const std::vector<std::string>& paths);
 /// The same, and a set without truth is an error.
 std::vector<BenchmarkSet> find_sets_with_truth(const std::vector<std::string>& paths);
 
+/// True poses by file, or by the folder of a set. Throws std::runtime_error.
+Trajectory read_truth(const std::string& path);
+
 }  // namespace lilo

@@ -1,5 +1,6 @@
 #include "tools/eval/eval_command.hpp"
 
+#include "tools/bench/benchmark_set.hpp"
 #include "tools/cli.hpp"
 #include "tools/eval/report.hpp"
 
@@ -21,7 +22,7 @@ struct EvalOptions {
 
 void run_eval(const EvalOptions& options) {
   const Trajectory estimate = read_trajectory(options.estimate);
-  const Trajectory truth = read_trajectory(options.truth);
+  const Trajectory truth = read_truth(options.truth);
   const Evaluation evaluation = evaluate(estimate, truth, options.lengths_m, options.step);
   fmt::print("{}", options.json ? to_json(evaluation) : to_text(evaluation));
 }
@@ -34,7 +35,8 @@ void add_eval_command(CLI::App& app) {
   command->add_option("ESTIMATE", options->estimate, "TUM or KITTI poses")->required();
   command
       ->add_option("TRUTH", options->truth,
-                   "TUM (matched by time, interpolated) or KITTI (by row) poses")
+                   "TUM (matched by time, interpolated) or KITTI (by row) poses, or the "
+                   "folder of a data set")
       ->required();
   command
       ->add_option(

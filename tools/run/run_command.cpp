@@ -1,5 +1,6 @@
 #include "tools/run/run_command.hpp"
 
+#include "tools/bench/benchmark_set.hpp"
 #include "tools/plot/trajectory_view.hpp"
 #include "tools/progress_bar.hpp"
 #include "tools/run/odometry_run.hpp"
@@ -42,7 +43,7 @@ OdometryRun run_with_progress(ScanSource& source, const Config& config, MapPoint
 void write_picture(const RunOptions& options, const OdometryRun& run, const MapPoints& map) {
   const Trajectory estimate{.name = "estimate", .has_times = true, .poses = run.poses};
   std::optional<Trajectory> truth;
-  if (!options.truth.empty()) truth = read_trajectory(options.truth);
+  if (!options.truth.empty()) truth = read_truth(options.truth);
   const std::string file_name = std::filesystem::path(options.input).filename().string();
   const std::string& title = options.title.empty() ? file_name : options.title;
   draw(trajectory_view(title, {estimate}, truth, map)).save(options.picture);
@@ -89,7 +90,8 @@ void add_run_command(CLI::App& app) {
   sub->add_option("--kitti", options->kitti, "Write the poses: 12 numbers, sensor frame");
   sub->add_option("--stats", options->stats, "Write scans, losses, CPU times, memory as JSON");
   sub->add_option("--picture,--map-png", options->picture, "Draw trajectory and map from above");
-  sub->add_option("--truth", options->truth, "True poses, for the picture");
+  sub->add_option("--truth", options->truth,
+                  "True poses for the picture, or the folder of a data set");
   sub->add_option("--title", options->title, "Of the picture");
   sub->callback([options] { run_run(*options); });
 }
