@@ -69,7 +69,7 @@ set datafile separator comma
 set datafile missing ""
 set border 3 linecolor rgb "#404040"
 set tics nomirror out
-set grid ytics back linecolor rgb "#d8d8d8" linewidth 1 dashtype 1
+set grid ytics back linetype 1 linecolor rgb "#e0e0e0" linewidth 1
 set key top left outside horizontal samplen 2 noenhanced
 )",
                      width, height, gnuplot_text(png));
