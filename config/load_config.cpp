@@ -90,6 +90,7 @@ Config load_config(const std::string& path) {
     throw ConfigError(lines);
   }
   resolve_paths(path, config);
+  config.sensor.position_port = config.udp.position_port;
   return config;
 }
 

@@ -21,6 +21,7 @@ constexpr std::int64_t kReplaceableNs = 2'000'000'000;
 struct ScanBuilder::Impl {
   Impl(const SensorConfig& config, Scan& target, ScanSink& sink)
       : model(config.model),
+        position_port(config.position_port),
         vlp16(config, azimuths),
         hdl64e(config, azimuths),
         assembler(config, target, sink) {}
@@ -37,6 +38,7 @@ struct ScanBuilder::Impl {
                 PacketSequence::Verdict verdict);
 
   SensorModel model;
+  std::uint16_t position_port;
   SensorModel seen_model = SensorModel::automatic;
   AzimuthTable azimuths;
   Vlp16Decoder vlp16;
@@ -87,10 +89,8 @@ void ScanBuilder::Impl::feed(const PacketView& packet) {
     ++counts.foreign_packets;
     return;
   }
-  const std::size_t size = packet.payload.size();
-  const bool taken = size == wire::kDataPacketBytes       ? feed_data(packet)
-                     : size == wire::kPositionPacketBytes ? feed_position(packet)
-                                                          : false;
+  const bool on_position_port = position_port != 0 && packet.destination_port == position_port;
+  const bool taken = on_position_port ? feed_position(packet) : feed_data(packet);
   if (taken) {
     sensor_ipv4 = packet.source_ipv4;
     sensor_heard_ns = packet.received_ns;
@@ -118,6 +118,7 @@ bool ScanBuilder::Impl::feed_position(const PacketView& packet) {
 }
 
 bool ScanBuilder::Impl::feed_data(const PacketView& packet) {
+  if (packet.payload.size() != wire::kDataPacketBytes) return false;
   const DataPacket data = packet.payload.first<wire::kDataPacketBytes>();
   const std::uint32_t stamp_us = wire::u32(data.data() + wire::kStampOffset);
   if (stamp_us > wire::kMaxStampUs) return false;

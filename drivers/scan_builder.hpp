@@ -26,7 +26,7 @@ class ScanSink {
 struct DriverCounts {
   std::uint64_t data_packets = 0;
   std::uint64_t position_packets = 0;
-  std::uint64_t malformed_packets = 0;  ///< wrong size, flag or azimuth: counted, never fatal
+  std::uint64_t malformed_packets = 0;  ///< wrong size, port, flag or azimuth: counted, never fatal
   std::uint64_t packets_lost = 0;
   std::uint64_t packets_duplicated = 0;
   std::uint64_t packets_reordered = 0;

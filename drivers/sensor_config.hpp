@@ -22,6 +22,9 @@ struct SensorConfig {
   double min_range_m = 0.4;  ///< nearer returns are the robot itself or dust on the lens
   double max_range_m = 130.0;
   ReturnChoice returns = ReturnChoice::both;
+  /// Only what comes in here is a position packet, and nothing else of what does; 0: none is.
+  /// Follows udp.position_port.
+  std::uint16_t position_port = 8308;
 };
 
 }  // namespace lilo

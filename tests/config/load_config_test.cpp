@@ -68,6 +68,11 @@ TEST(LoadConfig, KeysLeftOutKeepTheirDefaults) {
   }
 }
 
+TEST(LoadConfig, CapturesHaveTheirPositionPacketsOnTheConfiguredPort) {
+  const YamlFile file("udp:\n  position_port: 8400\n");
+  EXPECT_EQ(load_config(file.path()).sensor.position_port, 8400);
+}
+
 TEST(LoadConfig, CalibrationFileIsRelativeToTheConfiguration) {
   const YamlFile file("sensor:\n  calibration_file: unit/db.xml\n");
   const auto folder = std::filesystem::path(file.path()).parent_path();

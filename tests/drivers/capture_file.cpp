@@ -147,8 +147,7 @@ std::string pcapng_bytes(const std::vector<Record>& records) {
 std::vector<Record> records_of(const std::vector<TimedPacket>& packets) {
   std::vector<Record> records;
   for (const TimedPacket& p : packets) {
-    const std::uint16_t port = p.bytes.size() == 512 ? 8308 : 2368;
-    records.push_back({ethernet(ipv4(udp_datagram(p.bytes, port))), p.received_ns});
+    records.push_back({ethernet(ipv4(udp_datagram(p.bytes, p.port))), p.received_ns});
   }
   return records;
 }

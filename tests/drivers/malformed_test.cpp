@@ -70,9 +70,36 @@ TEST(Malformed, AnotherModel) {
 }
 
 TEST(Malformed, APositionPacketOnTheDataPort) {
-  const Outcome out = with(test::position_packet(1'000'000'000, 2, "no sentence at all", 0));
+  // It would set the clock by GPS if it were believed.
+  TimedPacket packet =
+      test::position_packet(1'000'000'000, 2, test::gprmc(9, 16, 40, 14, 5, 2024), 0);
+  packet.port = 2368;
+  TimedPacket zeros = packet;
+  zeros.bytes.assign(512, std::byte{0});
+  for (const TimedPacket& wrong : {packet, zeros}) {
+    const Outcome out = with(wrong);
+    expect_left_out(out);
+    EXPECT_EQ(out.counts.position_packets, 0U);
+    EXPECT_EQ(out.status.clock, ClockSource::host);
+  }
+}
+
+TEST(Malformed, ADataPacketOnThePositionPort) {
+  TimedPacket packet = test::vlp16_packets(170, {})[60];
+  packet.port = 8308;
+  expect_left_out(with(packet));
+}
+
+TEST(Malformed, ThePositionPortIsTheConfiguredOne) {
+  TimedPacket packet =
+      test::position_packet(1'000'000'000, 2, test::gprmc(9, 16, 40, 14, 5, 2024), 0);
+  SensorConfig config;
+  config.position_port = 4000;
+  EXPECT_EQ(with(packet, config).counts.position_packets, 0U);
+  packet.port = 4000;
+  const Outcome out = with(packet, config);
   EXPECT_EQ(out.counts.position_packets, 1U);
-  EXPECT_EQ(out.counts.packets_lost, 1U);
+  EXPECT_EQ(out.counts.malformed_packets, 0U);
 }
 
 TEST(Malformed, OldFirmwareIsTakenWhenTheModelIsConfigured) {

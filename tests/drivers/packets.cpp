@@ -11,7 +11,7 @@ PacketView TimedPacket::view() const {
   return {.received_ns = received_ns,
           .source_ipv4 = source_ipv4,
           .source_port = 2368,
-          .destination_port = bytes.size() == 512 ? std::uint16_t{8308} : std::uint16_t{2368},
+          .destination_port = port,
           .payload = bytes};
 }
 
@@ -54,6 +54,7 @@ TimedPacket position_packet(std::uint32_t stamp_us, int pps, const std::string& 
                             std::int64_t received_ns) {
   TimedPacket packet;
   packet.received_ns = received_ns;
+  packet.port = 8308;
   packet.bytes.resize(512);
   for (std::size_t i = 0; i < 4; ++i)
     packet.bytes[0xC6 + i] = static_cast<std::byte>((stamp_us >> (8 * i)) & 0xFFU);

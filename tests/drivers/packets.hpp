@@ -16,6 +16,7 @@ struct TimedPacket {
   std::vector<std::byte> bytes;
   std::int64_t received_ns = 0;
   std::uint32_t source_ipv4 = 0xC0A801C9;  // 192.168.1.201, as delivered
+  std::uint16_t port = 2368;
   [[nodiscard]] PacketView view() const;
 };
 

@@ -48,7 +48,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t length = std::min(size, wanted);
     std::vector<std::byte> payload(kind == 5 ? length : wanted);
     std::copy_n(lilo::fuzz::bytes_of(data, size).begin(), length, payload.begin());
-    builder.feed({.received_ns = received_ns, .source_ipv4 = 1, .payload = payload});
+    builder.feed({.received_ns = received_ns,
+                  .source_ipv4 = 1,
+                  .destination_port = static_cast<std::uint16_t>(kind == 4 ? 8308 : 2368),
+                  .payload = payload});
     ++fed;
     data += length;
     size -= length;

@@ -18,7 +18,7 @@ void write(const fs::path& file, const std::string& bytes) {
 std::string stream(const std::vector<TimedPacket>& packets) {
   std::string out;
   for (const TimedPacket& packet : packets) {
-    out += packet.bytes.size() == 512 ? '\4' : '\0';
+    out += packet.port == 8308 ? '\4' : '\0';
     out += std::string("\x2F\x05", 2);  // 1327 us
     for (const std::byte b : packet.bytes) out += std::to_integer<char>(b);
   }

@@ -1,5 +1,6 @@
 #include "tools/replay/player.hpp"
 
+#include "drivers/wire.hpp"
 #include "tools/clock.hpp"
 
 #include <boost/asio/buffer.hpp>
@@ -14,7 +15,6 @@ namespace {
 
 using boost::asio::ip::udp;
 
-constexpr std::size_t kDataPacketBytes = 1206;
 constexpr std::int64_t kSlice_ns = 100'000'000;
 
 udp::endpoint resolve(boost::asio::io_context& io, const std::string& host) {
@@ -74,8 +74,8 @@ void Player::send(const PacketView& packet) {
 }
 
 std::uint16_t Player::port_for(const PacketView& packet) const {
-  const bool data = packet.payload.size() == kDataPacketBytes;
-  const std::uint16_t asked = data ? options_.data_port : options_.position_port;
+  const bool position = packet.destination_port == wire::kPositionPort;
+  const std::uint16_t asked = position ? options_.position_port : options_.data_port;
   return asked != 0 ? asked : packet.destination_port;
 }
 

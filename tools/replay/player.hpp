@@ -15,8 +15,8 @@ namespace lilo {
 struct ReplayOptions {
   std::string host = "127.0.0.1";
   double speed = 1.0;
-  std::uint16_t data_port = 0;      ///< where 1206-byte packets go; 0: as in the capture
-  std::uint16_t position_port = 0;  ///< where all others go; 0: as in the capture
+  std::uint16_t data_port = 0;      ///< where all others go; 0: as in the capture
+  std::uint16_t position_port = 0;  ///< where packets to port 8308 go; 0: as in the capture
 };
 
 struct ReplayCounts {
