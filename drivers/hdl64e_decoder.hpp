@@ -47,6 +47,9 @@ class Hdl64eDecoder final : public PacketDecoder {
   [[nodiscard]] double ticks_per_ns() const override { return ticks_per_ns_; }
   [[nodiscard]] double packet_period_ns() const override;
   [[nodiscard]] const BeamTable& beams() const override { return beams_; }
+  [[nodiscard]] std::size_t max_column_returns() const override {
+    return 2 * kBank * (dual_ && choice_ == ReturnChoice::both ? 2 : 1);
+  }
   void append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const override;
 
   [[nodiscard]] bool is_dual() const { return dual_; }

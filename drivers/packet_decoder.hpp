@@ -37,6 +37,8 @@ class PacketDecoder {
   /// Time from one packet's stamp to the next one's; 0 while it is not known.
   [[nodiscard]] virtual double packet_period_ns() const = 0;
   [[nodiscard]] virtual const BeamTable& beams() const = 0;
+  /// The most returns that one column can have in the mode of this packet.
+  [[nodiscard]] virtual std::size_t max_column_returns() const = 0;
   /// Adds the returns of one column, in firing order; `t_ns` is the time of its first firing.
   virtual void append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const = 0;
 };

@@ -16,6 +16,16 @@ constexpr std::int64_t kStampJitterNs = 20'000;
 constexpr int kAgainstPackets = 20;  // before a change of direction is believed
 // The slowest head turns at 5 Hz. One that has not come round after this is standing still.
 constexpr std::int64_t kMaxScanNs = 500'000'000;
+constexpr double kSlowestTurnNs = 200e6;
+
+// The most returns a turn of this speed can have. A packet's own speed is up to 3 percent wrong:
+// HDL-64E, dual returns, a tick of noise in two steps.
+std::size_t max_scan_returns(const PacketDecoder& decoder) {
+  const double column_ns =
+      decoder.packet_period_ns() / static_cast<double>(decoder.columns().size());
+  const double turn_ns = std::min(kTurn / std::abs(decoder.ticks_per_ns()), kSlowestTurnNs);
+  return static_cast<std::size_t>(turn_ns / column_ns + 1.0) * decoder.max_column_returns();
+}
 
 }  // namespace
 
@@ -145,6 +155,9 @@ void ScanAssembler::begin_scan(const PacketDecoder& decoder, std::int64_t column
   scan_->clear();
   scan_->index = cuts_passed_ - 1;
   scan_->beams = decoder.beams();
+  // All at once, or it would grow in the middle of revolutions whenever there is more to see.
+  const std::size_t most = max_scan_returns(decoder);
+  if (scan_->returns.capacity() < most) scan_->returns.reserve(most + most / 8);
   in_scan_ = true;
   scan_start_ns_ = column_ns;
   scan_end_ns_ = column_ns;

@@ -41,7 +41,9 @@ struct DriverCounts {
 struct Hdl64eCalibration;
 
 /// Packets to scans: finds the model, decodes, cuts by azimuth, keeps the sensor's clock.
-/// One thread; no allocation after the first revolution; nothing a packet holds can harm it.
+/// One thread; nothing a packet holds can harm it. A scan that is written gets memory for all that
+/// a revolution can hold when it begins: with a sink of two scans there is no allocation after the
+/// first revolution, until the sensor's mode or speed asks for more.
 class ScanBuilder {
  public:
   /// `target` is written first. Throws DriverError when the calibration cannot be read.

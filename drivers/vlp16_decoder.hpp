@@ -28,6 +28,10 @@ class Vlp16Decoder final : public PacketDecoder {
   [[nodiscard]] double ticks_per_ns() const override { return ticks_per_ns_; }
   [[nodiscard]] double packet_period_ns() const override;
   [[nodiscard]] const BeamTable& beams() const override { return beams_; }
+  [[nodiscard]] std::size_t max_column_returns() const override {
+    const bool twice = mode_ == ReturnMode::dual && choice_ == ReturnChoice::both;
+    return std::size_t{kLasers} * (twice ? 2 : 1);
+  }
   void append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const override;
 
   [[nodiscard]] ReturnMode mode() const { return mode_; }
