@@ -38,7 +38,7 @@ enum class ClockSource : std::uint8_t {
 struct PacketCounts {
   std::uint32_t expected = 0;    ///< by the sensor's own stamps
   std::uint32_t received = 0;    ///< used in this scan
-  std::uint32_t lost = 0;        ///< expected and never seen
+  std::uint32_t lost = 0;        ///< expected and not seen until the scan was handed on
   std::uint32_t duplicated = 0;  ///< seen again and ignored
   std::uint32_t reordered = 0;   ///< came after a later one
 };

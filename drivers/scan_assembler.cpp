@@ -44,7 +44,7 @@ void ScanAssembler::add(const PacketDecoder& decoder, std::int64_t line_ns,
 }
 
 bool ScanAssembler::add_late(const PacketDecoder& decoder, std::int64_t line_ns) {
-  if (!in_scan_) return false;
+  if (!in_scan_) return true;  // lost outside of scans until now
   bool used = false;
   const auto columns = decoder.columns();
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -65,12 +65,12 @@ bool ScanAssembler::add_late(const PacketDecoder& decoder, std::int64_t line_ns)
     coverage_.mark(phase_of(columns[i].azimuth_ticks));
     scan_end_ns_ = std::max(scan_end_ns_, line_ns + columns[i].last_ns);
   }
-  if (used) {
-    ++counts_.reordered;
-    ++counts_.received;
-    counts_.lost -= std::min(counts_.lost, 1U);
-  }
-  return used;
+  if (!used) return line_ns < scan_start_ns_ && !follows_scan_;
+  ++counts_.reordered;
+  ++counts_.received;
+  if (counts_.lost == 0) return !follows_scan_;
+  --counts_.lost;
+  return true;
 }
 
 double ScanAssembler::phase_of(double azimuth_ticks) const {
@@ -127,6 +127,7 @@ void ScanAssembler::add_column(const PacketDecoder& decoder, std::size_t column,
   if (has_column_) {
     const double sweep = sweep_to(phase, column_ns, decoder.ticks_per_ns());
     if (phase_ + sweep >= kTurn) {
+      follows_scan_ = in_scan_;
       if (in_scan_) end_scan(clock, true);
       cuts_passed_ += static_cast<std::uint64_t>((phase_ + sweep) / kTurn);
       begin_scan(decoder, column_ns, clock);

@@ -22,7 +22,7 @@ class ScanAssembler {
   void add(const PacketDecoder& decoder, std::int64_t line_ns, PacketSequence::Verdict verdict,
            SensorClock& clock);
   /// A packet that was overtaken: what belongs to the scan being written is put in its place.
-  /// False when all of it belongs to a scan that was handed on before.
+  /// False when it had been counted as lost in a scan that was handed on before.
   bool add_late(const PacketDecoder& decoder, std::int64_t line_ns);
   void note_duplicate() { ++counts_.duplicated; }
 
@@ -58,6 +58,7 @@ class ScanAssembler {
   std::int64_t last_firing_ns_ = 0;
 
   bool in_scan_ = false;
+  bool follows_scan_ = false;       // the scan being written begins where one ended
   std::int64_t scan_start_ns_ = 0;  // on the sensor's line
   std::int64_t scan_end_ns_ = 0;
   Coverage coverage_;

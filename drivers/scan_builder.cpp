@@ -209,7 +209,7 @@ void ScanBuilder::Impl::assemble(const PacketDecoder& decoder, std::int64_t line
       assembler.note_duplicate();
       break;
     case PacketSequence::Arrival::late:
-      assembler.add_late(decoder, line_ns);
+      if (!assembler.add_late(decoder, line_ns)) ++counts.packets_late;
       break;
     default:
       assembler.add(decoder, line_ns, verdict, clock);

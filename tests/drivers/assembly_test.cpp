@@ -169,6 +169,49 @@ TEST(Assembly, PacketsSwappedAcrossTheCutAddNothingToTheNextScan) {
   expect_no_ghosts(out);
 }
 
+std::uint64_t lost_in_scans(const Outcome& out) {
+  std::uint64_t lost = 0;
+  for (const Scan& scan : out.scans) lost += scan.packets.lost;
+  return lost;
+}
+
+// 79 holds the cut, 78 lies before it: scan 0 is handed on without it.
+TEST(Assembly, APacketLateForItsScanIsLostThereButNotInTotal) {
+  auto packets = four_turns();
+  const TimedPacket late = packets[78];
+  packets.insert(packets.begin() + 81, late);
+  packets.erase(packets.begin() + 78);
+  const Outcome out = build(packets);
+  ASSERT_EQ(out.scans.size(), 4U);
+  EXPECT_EQ(out.scans[0].packets.lost, 1U);
+  EXPECT_EQ(out.scans[1].packets.lost, 0U);
+  EXPECT_EQ(out.counts.packets_lost, 0U);
+  EXPECT_EQ(out.counts.packets_reordered, 1U);
+  EXPECT_EQ(out.counts.packets_late, 1U);
+}
+
+TEST(Assembly, LossOfScansAndOfTotalAgreeWhateverTheOrder) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    std::mt19937 random(seed);
+    auto packets = four_turns();
+    // Nothing is disturbed before the first scan and after the last.
+    std::size_t dropped = 0;
+    for (std::size_t i = 285; i > 10; --i) {
+      if (random() % 12 == 0) std::swap(packets[i], packets[i - 1 - random() % 8]);
+    }
+    for (std::size_t i = 285; i > 10; --i) {
+      if (random() % 15 != 0) continue;
+      packets.erase(packets.begin() + static_cast<std::ptrdiff_t>(i));
+      ++dropped;
+    }
+    const Outcome out = build(packets);
+    EXPECT_EQ(out.counts.packets_lost, dropped) << seed;
+    EXPECT_EQ(lost_in_scans(out), out.counts.packets_lost + out.counts.packets_late) << seed;
+    for (const Scan& scan : out.scans)
+      EXPECT_EQ(scan.packets.expected, scan.packets.received + scan.packets.lost);
+  }
+}
+
 // Found by fuzzing: stamps nearer to each other than packets can be.
 TEST(Assembly, WaveringStampsKeepTheOrderOfFirings) {
   auto packets = four_turns();

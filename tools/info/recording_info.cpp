@@ -66,9 +66,9 @@ RecordingInfo read_recording(ScanSource& source, const std::function<void(const 
   info.failure = source.error();
   std::uint64_t lost_in_scans = 0;
   for (const ScanLoss& loss : info.losses) lost_in_scans += loss.packets;
-  const std::uint64_t lost = info.driver_counts.packets_lost;
+  info.late_for_scan = info.driver_counts.packets_late;
+  const std::uint64_t lost = info.driver_counts.packets_lost + info.late_for_scan;
   info.lost_outside_scans = lost - std::min(lost, lost_in_scans);
-  info.late_for_scan = lost_in_scans - std::min(lost, lost_in_scans);
   return info;
 }
 
