@@ -60,7 +60,8 @@ struct Scan {
   bool motion_compensated = false;  ///< the data set's authors already moved all returns to end_ns
   float coverage_rad = 0.0F;        ///< azimuth swept by packets that arrived, at most 2 pi
   float hole_start_rad = 0.0F;  ///< azimuth (as Return::azimuth_rad) where the largest hole starts,
-  float hole_width_rad = 0.0F;  ///< and how far it reaches in the direction of turning; 0 = none
+  float hole_width_rad = 0.0F;  ///< and how far it reaches in the direction of turning; 0 = none. A
+                                ///< sector the sensor never fires in is none once it is known
   PacketCounts packets;
   BeamTable beams;
   std::vector<Return> returns;  ///< firing order; capacity is reserved once and kept

@@ -36,6 +36,9 @@ class PacketDecoder {
   [[nodiscard]] virtual double ticks_per_ns() const = 0;
   /// Time from one packet's stamp to the next one's; 0 while it is not known.
   [[nodiscard]] virtual double packet_period_ns() const = 0;
+  /// Time within the packet in which nothing fired (a blind sector): the next stamp is as much
+  /// later.
+  [[nodiscard]] virtual std::int64_t inner_gap_ns() const { return 0; }
   [[nodiscard]] virtual const BeamTable& beams() const = 0;
   /// The most returns that one column can have in the mode of this packet.
   [[nodiscard]] virtual std::size_t max_column_returns() const = 0;

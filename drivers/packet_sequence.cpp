@@ -24,20 +24,22 @@ PacketSequence::Verdict PacketSequence::start_over(std::int64_t stamp_ns, std::i
   started_ = true;
   newest_ns_ = stamp_ns;
   received_ns_ = received_ns;
+  inner_gap_ns_ = 0;
   seen_count_ = 0;
   remember(stamp_ns);
   return {arrival, 0};
 }
 
 PacketSequence::Verdict PacketSequence::see(std::int64_t stamp_ns, std::int64_t received_ns,
-                                            double period_ns) {
+                                            double period_ns, std::int64_t inner_gap_ns) {
   if (!started_) return start_over(stamp_ns, received_ns, Arrival::first);
   const std::int64_t step_ns = stamp_ns - newest_ns_;
   if (step_ns > 0) {
     const std::int64_t received_step_ns = received_ns - received_ns_;
     if (step_ns > kSuspiciousNs && std::abs(step_ns - received_step_ns) > kSuspiciousNs)
       return start_over(stamp_ns, received_ns, Arrival::restart);
-    const auto periods = std::llround(static_cast<double>(step_ns) / period_ns);
+    const auto periods = std::llround(static_cast<double>(step_ns - inner_gap_ns_) / period_ns);
+    inner_gap_ns_ = inner_gap_ns;
     newest_ns_ = stamp_ns;
     received_ns_ = received_ns;
     remember(stamp_ns);

@@ -22,8 +22,10 @@ class PacketSequence {
     std::uint32_t lost = 0;
   };
 
-  /// `stamp_ns` on a time line without hour wraps, `received_ns` by the computer's clock.
-  Verdict see(std::int64_t stamp_ns, std::int64_t received_ns, double period_ns);
+  /// `stamp_ns` on a time line without hour wraps, `received_ns` by the computer's clock. The
+  /// packet after this one is due `period_ns + inner_gap_ns` later.
+  Verdict see(std::int64_t stamp_ns, std::int64_t received_ns, double period_ns,
+              std::int64_t inner_gap_ns = 0);
 
   /// Forgets what was before this packet.
   void restart_at(std::int64_t stamp_ns, std::int64_t received_ns) {
@@ -39,6 +41,7 @@ class PacketSequence {
   bool started_ = false;
   std::int64_t newest_ns_ = 0;
   std::int64_t received_ns_ = 0;
+  std::int64_t inner_gap_ns_ = 0;  // of the newest
   std::array<std::int64_t, kMemory> seen_{};
   std::size_t seen_count_ = 0;
 };

@@ -35,6 +35,24 @@ ScanAssembler::ScanAssembler(const SensorConfig& config, Scan& target, ScanSink&
       scan_(&target),
       sink_(sink) {}
 
+std::uint32_t ScanAssembler::without_blind(const PacketDecoder& decoder, std::int64_t line_ns,
+                                           std::uint32_t missing) {
+  if (missing == 0 || !has_column_) return missing;
+  const Column& c = decoder.columns().front();
+  const double sweep =
+      sweep_to(phase_of(c.azimuth_ticks), line_ns + c.first_ns, decoder.ticks_per_ns());
+  const double packet_ticks = std::abs(decoder.ticks_per_ns()) * decoder.packet_period_ns();
+  return blind_.see_gap({phase_, sweep}, packet_ticks, missing);
+}
+
+void ScanAssembler::describe(SensorStatus& status) const {
+  const auto sector = blind_.sector();
+  if (!sector) return;
+  status.blind_start_rad =
+      static_cast<double>(ccw_rad_from_ticks(cut_ticks_ + direction_ * sector->start_ticks));
+  status.blind_width_rad = sector->width_ticks * wire::kRadPerTick;
+}
+
 void ScanAssembler::add(const PacketDecoder& decoder, std::int64_t line_ns,
                         PacketSequence::Verdict verdict, SensorClock& clock) {
   follow_direction(decoder.ticks_per_ns(), clock);
@@ -102,6 +120,7 @@ void ScanAssembler::follow_direction(double ticks_per_ns, const SensorClock& clo
   if (has_column_ && against_ < kAgainstPackets) return;
   interrupt(clock);
   direction_ = -direction_;
+  blind_ = BlindSector();
   against_ = 0;
 }
 
@@ -126,6 +145,9 @@ void ScanAssembler::add_column(const PacketDecoder& decoder, std::size_t column,
   const double phase = phase_of(c.azimuth_ticks);
   if (has_column_) {
     const double sweep = sweep_to(phase, column_ns, decoder.ticks_per_ns());
+    if (column > 0 && decoder.inner_gap_ns() > 0)
+      blind_.see_gap({phase_, sweep}, std::abs(decoder.ticks_per_ns()) * decoder.packet_period_ns(),
+                     0);
     if (phase_ + sweep >= kTurn) {
       follows_scan_ = in_scan_;
       if (in_scan_) end_scan(clock, true);
@@ -137,6 +159,7 @@ void ScanAssembler::add_column(const PacketDecoder& decoder, std::size_t column,
     phase_ = phase;
     has_column_ = true;
   }
+  blind_.see_column(phase);
   column_ns_ = column_ns;
   last_firing_ns_ = column_ns + c.last_ns - c.first_ns;
   if (!in_scan_) return;
@@ -167,8 +190,19 @@ void ScanAssembler::begin_scan(const PacketDecoder& decoder, std::int64_t column
   lost_after_cut_ = 0;
 }
 
+// Where nothing is ever sent, nothing is missing.
+Coverage::Hole ScanAssembler::largest_hole() const {
+  const auto sector = blind_.sector();
+  if (!sector) return coverage_.largest_hole();
+  Coverage coverage = coverage_;
+  for (double ticks = 0.0; ticks <= sector->width_ticks; ticks += Coverage::kTicksPerBin)
+    coverage.mark(wrap_ticks(sector->start_ticks + ticks));
+  coverage.mark(wrap_ticks(sector->start_ticks + sector->width_ticks));
+  return coverage.largest_hole();
+}
+
 void ScanAssembler::end_scan(const SensorClock& clock, bool whole) {
-  const Coverage::Hole hole = coverage_.largest_hole();
+  const Coverage::Hole hole = largest_hole();
   Scan& scan = *scan_;
   scan.start_ns = clock.to_utc_ns(scan_start_ns_);
   scan.end_ns = clock.to_utc_ns(scan_end_ns_);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include "core/scan.hpp"
+#include "drivers/blind_sector.hpp"
 #include "drivers/coverage.hpp"
 #include "drivers/packet_decoder.hpp"
 #include "drivers/packet_sequence.hpp"
 #include "drivers/scan_builder.hpp"
 #include "drivers/sensor_clock.hpp"
+#include "drivers/sensor_status.hpp"
 
 #include <cstdint>
 
@@ -17,6 +19,14 @@ namespace lilo {
 class ScanAssembler {
  public:
   ScanAssembler(const SensorConfig& config, Scan& target, ScanSink& sink);
+
+  /// How many of the `missing` packets before this new one are lost, and not of a blind sector. To
+  /// be asked before add().
+  std::uint32_t without_blind(const PacketDecoder& decoder, std::int64_t line_ns,
+                              std::uint32_t missing);
+  /// See BlindSector.
+  std::uint64_t take_miscounted_as_lost() { return blind_.take_miscounted(); }
+  void describe(SensorStatus& status) const;
 
   /// A packet that is new (first, next or restart). `line_ns` is its stamp on the sensor's line.
   void add(const PacketDecoder& decoder, std::int64_t line_ns, PacketSequence::Verdict verdict,
@@ -40,6 +50,7 @@ class ScanAssembler {
                   SensorClock& clock);
   void spread_loss(std::uint32_t lost, double period_ns, std::int64_t line_ns);
   void follow_direction(double ticks_per_ns, const SensorClock& clock);
+  [[nodiscard]] Coverage::Hole largest_hole() const;
   [[nodiscard]] double phase_of(double azimuth_ticks) const;
   [[nodiscard]] double sweep_to(double phase, std::int64_t column_ns, double ticks_per_ns) const;
   void begin_scan(const PacketDecoder& decoder, std::int64_t column_ns, SensorClock& clock);
@@ -61,6 +72,7 @@ class ScanAssembler {
   bool follows_scan_ = false;       // the scan being written begins where one ended
   std::int64_t scan_start_ns_ = 0;  // on the sensor's line
   std::int64_t scan_end_ns_ = 0;
+  BlindSector blind_;  // in phases
   Coverage coverage_;
   PacketCounts counts_;
   std::uint32_t lost_after_cut_ = 0;  // of a gap that reaches beyond the next cut

@@ -34,6 +34,7 @@ struct ScanBuilder::Impl {
   bool feed_hdl64e(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
   PacketSequence::Verdict sort(const PacketDecoder& decoder, std::uint32_t stamp_us,
                                std::int64_t received_ns, std::int64_t& line_ns);
+  void forgive_blind();
   void assemble(const PacketDecoder& decoder, std::int64_t line_ns,
                 PacketSequence::Verdict verdict);
 
@@ -79,6 +80,7 @@ SensorStatus ScanBuilder::status() const {
     decoder = &impl.hdl64e.decoder();
     impl.hdl64e.describe(status);
   }
+  impl.assembler.describe(status);
   if (decoder != nullptr)
     status.rpm = std::abs(decoder->ticks_per_ns()) * 60e9 / wire::kTicksPerTurn;
   return status;
@@ -178,7 +180,8 @@ bool ScanBuilder::Impl::feed_hdl64e(DataPacket data, std::uint32_t stamp_us,
 PacketSequence::Verdict ScanBuilder::Impl::sort(const PacketDecoder& decoder,
                                                 std::uint32_t stamp_us, std::int64_t received_ns,
                                                 std::int64_t& line_ns) {
-  const auto verdict = sequence.see(line_ns, received_ns, decoder.packet_period_ns());
+  auto verdict =
+      sequence.see(line_ns, received_ns, decoder.packet_period_ns(), decoder.inner_gap_ns());
   switch (verdict.arrival) {
     case PacketSequence::Arrival::duplicate:
       ++counts.packets_duplicated;
@@ -196,10 +199,20 @@ PacketSequence::Verdict ScanBuilder::Impl::sort(const PacketDecoder& decoder,
       break;
     case PacketSequence::Arrival::first:
     case PacketSequence::Arrival::next:
+      verdict.lost = assembler.without_blind(decoder, line_ns, verdict.lost);
       counts.packets_lost += verdict.lost;
+      forgive_blind();
       break;
   }
   return verdict;
+}
+
+// What was due in a blind sector was counted as lost until the sector was known.
+void ScanBuilder::Impl::forgive_blind() {
+  const std::uint64_t miscounted =
+      std::min(counts.packets_lost, assembler.take_miscounted_as_lost());
+  counts.packets_lost -= miscounted;
+  counts.packets_blind += miscounted;
 }
 
 void ScanBuilder::Impl::assemble(const PacketDecoder& decoder, std::int64_t line_ns,

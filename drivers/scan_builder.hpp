@@ -32,8 +32,10 @@ struct DriverCounts {
   std::uint64_t packets_reordered = 0;
   /// Of those reordered: what they bring is missing in a scan that had been handed on, which counts
   /// them as lost for ever. So the lost packets of all scans, and those lost outside of scans, are
-  /// packets_lost + packets_late together.
+  /// packets_lost + packets_late + packets_blind together.
   std::uint64_t packets_late = 0;
+  /// Never sent, but counted as lost in scans handed on before the blind sector was known.
+  std::uint64_t packets_blind = 0;
   std::uint64_t scans_complete = 0;
   std::uint64_t scans_partial = 0;
   std::uint64_t sensor_restarts = 0;  ///< its clock jumped

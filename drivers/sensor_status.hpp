@@ -25,6 +25,9 @@ struct SensorStatus {
   ReturnMode return_mode = ReturnMode::strongest;
   double rpm = 0.0;
   double packet_period_us = 0.0;  ///< HDL-64E: 0 until it is measured
+  /// Sector in which the sensor sends nothing turn after turn (field of view set in its web page),
+  /// from this azimuth (as Return::azimuth_rad) in the direction of turning; width 0: none.
+  double blind_start_rad = 0.0, blind_width_rad = 0.0;
   ClockSource clock = ClockSource::host;
   CalibrationOrigin calibration = CalibrationOrigin::none;
   double calibration_progress = 0.0;       ///< part of the table read from packets, in [0, 1]

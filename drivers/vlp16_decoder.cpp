@@ -10,6 +10,9 @@ namespace {
 constexpr std::int32_t kLaserNs = 2304;
 constexpr std::int32_t kSequenceNs = 55296;
 constexpr std::int32_t kBlockNs = 2 * kSequenceNs;
+constexpr double kMinStepTicks = 10.0;  // 150 rpm: slower is no turning
+constexpr double kMinGapTicks = 500.0;
+constexpr double kSpeedNoise = 0.02, kMeanPackets = 50.0;
 constexpr double kOriginRadiusM = 0.04191;
 constexpr double kMaxStepTicks = 500.0;  // 7500 rpm: no head turns like that, the packet is wrong
 
@@ -63,6 +66,7 @@ bool Vlp16Decoder::load(DataPacket packet) {
   if (known && product != product_id_) set_product(product);
   mode_ = find_mode(packet_);
   measure_turn(packet_);
+  find_gap(packet_);
   place_columns(packet_);
   return true;
 }
@@ -103,13 +107,39 @@ void Vlp16Decoder::measure_turn(const std::byte* packet) {
   }
 }
 
+// A sensor that fires in a part of its turn goes on filling the packet where the part begins again:
+// one step of azimuth is far larger than the others, and took as much longer.
+void Vlp16Decoder::find_gap(const std::byte* packet) {
+  gap_block_ = 0;
+  gap_ns_ = 0;
+  const double step = std::abs(ticks_per_ns_) * kBlockNs;
+  if (step < kMinStepTicks) return;
+  // A packet's own speed has the noise of a tick, 0.2 percent: too much for half a turn.
+  const double apart = ticks_per_ns_ - mean_ticks_per_ns_;
+  const bool settled = std::abs(apart) < kSpeedNoise * std::abs(mean_ticks_per_ns_);
+  mean_ticks_per_ns_ = settled ? mean_ticks_per_ns_ + apart / kMeanPackets : ticks_per_ns_;
+  const double speed = std::abs(mean_ticks_per_ns_);
+  const int stride = blocks_per_shot(mode_), direction = ticks_per_ns_ > 0.0 ? 1 : -1;
+  for (int b = stride; b < wire::kBlocks; b += stride) {
+    const double turned = wrap_ticks(
+        direction * (wire::block_azimuth(packet, b) - wire::block_azimuth(packet, b - stride)));
+    const bool back = turned > wire::kTicksPerTurn - kMinGapTicks;  // noise, or nonsense
+    if (back || turned < step + kMinGapTicks) continue;
+    const bool second = gap_block_ != 0;
+    gap_block_ = second ? 0 : b;
+    gap_ns_ = second ? 0 : static_cast<std::int32_t>((turned - step) / speed);
+    if (second) return;  // nobody knows what this is
+  }
+}
+
 void Vlp16Decoder::place_columns(const std::byte* packet) {
   const int stride = blocks_per_shot(mode_);
   column_count_ = 0;
   for (int b = 0; b < wire::kBlocks; b += stride) {
     const double azimuth = wire::block_azimuth(packet, b);
     for (int sequence = 0; sequence < 2; ++sequence) {
-      const std::int32_t first_ns = (b / stride) * kBlockNs + sequence * kSequenceNs;
+      const std::int32_t waited_ns = gap_block_ > 0 && b >= gap_block_ ? gap_ns_ : 0;
+      const std::int32_t first_ns = (b / stride) * kBlockNs + sequence * kSequenceNs + waited_ns;
       columns_[column_count_++] = {
           .azimuth_ticks = wrap_ticks(azimuth + sequence * ticks_per_ns_ * kSequenceNs),
           .first_ns = first_ns,

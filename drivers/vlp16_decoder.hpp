@@ -27,6 +27,7 @@ class Vlp16Decoder final : public PacketDecoder {
   }
   [[nodiscard]] double ticks_per_ns() const override { return ticks_per_ns_; }
   [[nodiscard]] double packet_period_ns() const override;
+  [[nodiscard]] std::int64_t inner_gap_ns() const override { return gap_ns_; }
   [[nodiscard]] const BeamTable& beams() const override { return beams_; }
   [[nodiscard]] std::size_t max_column_returns() const override {
     const bool twice = mode_ == ReturnMode::dual && choice_ == ReturnChoice::both;
@@ -56,6 +57,7 @@ class Vlp16Decoder final : public PacketDecoder {
   void set_product(std::uint8_t product_id);
   [[nodiscard]] ReturnMode find_mode(const std::byte* packet) const;
   void measure_turn(const std::byte* packet);
+  void find_gap(const std::byte* packet);
   void place_columns(const std::byte* packet);
   void project(const std::byte* block, int sequence, std::int32_t t_ns, ReturnKind kind,
                std::array<Return, kLasers>& returns, std::array<Echo, kLasers>& echoes) const;
@@ -76,8 +78,11 @@ class Vlp16Decoder final : public PacketDecoder {
   const std::byte* packet_ = nullptr;
   std::uint8_t product_id_ = 0;
   ReturnMode mode_ = ReturnMode::strongest;
-  double ticks_per_ns_ = 0.0;
+  double ticks_per_ns_ = 0.0;       // within the packet
+  double mean_ticks_per_ns_ = 0.0;  // of the last hundred packets or so
   Turn turn_{};
+  int gap_block_ = 0;        // the first block after a blind sector; 0: none
+  std::int32_t gap_ns_ = 0;  // how long that took
   std::size_t column_count_ = 0;
   std::array<Column, std::size_t{2} * wire::kBlocks> columns_{};
 };

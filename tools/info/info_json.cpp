@@ -37,6 +37,8 @@ Json sensor_json(const RecordingInfo& info) {
           {"return_modes", modes},
           {"rings", info.rings},
           {"packet_period_us", sensor.packet_period_us},
+          {"blind_start_deg", sensor.blind_start_rad * kDegPerRad},
+          {"blind_width_deg", sensor.blind_width_rad * kDegPerRad},
           {"rpm", {{"median", info.rpm}, {"min", info.rpm_min}, {"max", info.rpm_max}}}};
 }
 
@@ -48,6 +50,7 @@ Json packets_json(const RecordingInfo& info) {
           {"lost", driver.packets_lost},
           {"lost_outside_scans", info.lost_outside_scans},
           {"late_for_scan", info.late_for_scan},
+          {"blind", driver.packets_blind},
           {"duplicated", driver.packets_duplicated},
           {"reordered", driver.packets_reordered},
           {"waiting", driver.waiting_packets},

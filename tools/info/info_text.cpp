@@ -81,6 +81,18 @@ std::string rotation_text(const RecordingInfo& info) {
   return fmt::format("{:.0f} to {:.0f} rpm, mostly {:.0f}", info.rpm_min, info.rpm_max, info.rpm);
 }
 
+/// Clockwise, as the sensor and its web page count.
+std::string blind_text(const RecordingInfo& info) {
+  const SensorStatus& sensor = info.sensor;
+  const double from = std::fmod(360.0 - sensor.blind_start_rad * kDegPerRad, 360.0);
+  std::string text = fmt::format("sends nothing for {:.0f} degrees from {:.0f} on, clockwise",
+                                 sensor.blind_width_rad * kDegPerRad, from);
+  if (info.driver_counts.packets_blind > 0)
+    text += fmt::format("; {} counted as lost before that was known",
+                        plural(info.driver_counts.packets_blind, "packet"));
+  return text;
+}
+
 std::string clock_text(const RecordingInfo& info) {
   const auto [host, gps, replay] = info.clock_scans;
   if (host > 0 && gps > 0)
@@ -201,6 +213,7 @@ std::string to_text(const std::string& name, const RecordingInfo& info) {
   if (info.received.first_ns != 0) text += line("captured", captured_text(info));
   if (driver.data_packets > 0) {
     if (info.rpm > 0.0) text += line("rotation", rotation_text(info));
+    if (info.sensor.blind_width_rad > 0.0) text += line("blind sector", blind_text(info));
     text += line("clock", clock_text(info));
     if (info.scans > 0) text += line("first scan", utc(info.first_ns) + " UTC by that clock");
     text += line("calibration", calibration_text(info.sensor));

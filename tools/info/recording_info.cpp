@@ -67,7 +67,8 @@ RecordingInfo read_recording(ScanSource& source, const std::function<void(const 
   std::uint64_t lost_in_scans = 0;
   for (const ScanLoss& loss : info.losses) lost_in_scans += loss.packets;
   info.late_for_scan = info.driver_counts.packets_late;
-  const std::uint64_t lost = info.driver_counts.packets_lost + info.late_for_scan;
+  const std::uint64_t lost =
+      info.driver_counts.packets_lost + info.late_for_scan + info.driver_counts.packets_blind;
   info.lost_outside_scans = lost - std::min(lost, lost_in_scans);
   return info;
 }
