@@ -50,6 +50,9 @@ class PacketSource {
   [[nodiscard]] virtual SourceCounts counts() const = 0;
   /// Part of a file already read, in [0, 1]; 0 for a live source.
   [[nodiscard]] virtual double progress() const { return 0.0; }
+  /// How a capture's frames begin, by libpcap's name (EN10MB is Ethernet, LINUX_SLL cooked); empty
+  /// for a live source.
+  [[nodiscard]] virtual std::string link_type() const { return {}; }
   /// Why the data ended early, one line for the user; empty while nothing is wrong. A file that
   /// ends inside a record gives all it holds before this is set.
   [[nodiscard]] virtual std::string error() const { return {}; }

@@ -63,6 +63,7 @@ class PcapScans final : public ScanSource, private ScanSink {
   [[nodiscard]] SensorStatus sensor_status() const override { return builder_.status(); }
   [[nodiscard]] ReceivedSpan received() const override { return received_; }
   [[nodiscard]] double progress() const override { return packets_->progress(); }
+  [[nodiscard]] std::string link_type() const override { return packets_->link_type(); }
   [[nodiscard]] std::string error() const override { return packets_->error(); }
 
  private:

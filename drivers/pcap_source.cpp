@@ -24,12 +24,18 @@ struct ClosePcap {
 using File = std::unique_ptr<std::FILE, CloseFile>;
 using Pcap = std::unique_ptr<pcap_t, ClosePcap>;
 
+std::string link_name(int link_type) {
+  const char* name = pcap_datalink_val_to_name(link_type);
+  return name != nullptr ? name : std::to_string(link_type);
+}
+
 class PcapSource final : public PacketSource {
  public:
   explicit PcapSource(const std::string& path);
   ReadResult read(PacketView& packet, std::chrono::milliseconds timeout) override;
   [[nodiscard]] SourceCounts counts() const override { return counts_; }
   [[nodiscard]] double progress() const override;
+  [[nodiscard]] std::string link_type() const override { return link_name(link_type_); }
   [[nodiscard]] std::string error() const override { return error_; }
 
  private:
@@ -69,11 +75,9 @@ PcapSource::PcapSource(const std::string& path) : name_(path == "-" ? "standard 
     throw DriverError(name_ + ": expected a pcap or pcapng capture, found: " + reason.data());
   (void)file.release();  // pcap_close() closes it
   link_type_ = pcap_datalink(pcap_.get());
-  if (!is_known_link_type(link_type_)) {
-    const char* link = pcap_datalink_val_to_name(link_type_);
+  if (!is_known_link_type(link_type_))
     throw DriverError(name_ + ": expected frames of Ethernet, Linux cooked or raw IP, found " +
-                      (link != nullptr ? link : std::to_string(link_type_)));
-  }
+                      link_name(link_type_));
 }
 
 bool PcapSource::count(FrameKind kind) {

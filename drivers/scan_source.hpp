@@ -32,6 +32,8 @@ class ScanSource {
   [[nodiscard]] virtual SensorStatus sensor_status() const { return {}; }
   /// Of the capture's packets; nothing for data sets.
   [[nodiscard]] virtual ReceivedSpan received() const { return {}; }
+  /// See PacketSource; empty for data sets.
+  [[nodiscard]] virtual std::string link_type() const { return {}; }
   /// Part of the recording already read, in [0, 1]; 0 where that cannot be known.
   [[nodiscard]] virtual double progress() const = 0;
   /// Why the recording ended early, one line for the user; empty while nothing is wrong.

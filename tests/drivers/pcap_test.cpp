@@ -91,6 +91,17 @@ INSTANTIATE_TEST_SUITE_P(
                     LinkCase{"raw", 101, kIp}),
     [](const auto& test_case) { return test_case.param.name; });
 
+// Numbers and names are those of the registry at tcpdump.org/linktypes.html.
+TEST(LinkLayerName, IsToldAsLibpcapNamesIt) {
+  const std::pair<int, const char*> names[] = {
+      {1, "EN10MB"}, {113, "LINUX_SLL"}, {276, "LINUX_SLL2"}, {101, "RAW"}};
+  for (const auto& [type, name] : names) {
+    const auto path = write_file("name.pcap", pcap_bytes({{kIp, kTime}}, {.link_type = type}));
+    EXPECT_EQ(open_pcap(path)->link_type(), name);
+    EXPECT_EQ(open_scans(path, {})->link_type(), name);
+  }
+}
+
 TEST(LinkLayerForeign, OtherTrafficIsCountedAndSkipped) {
   Buffer ipv6 = kIp;
   ipv6[0] = std::byte{0x60};

@@ -68,6 +68,7 @@ TEST(Info, RealCaptureHoldsWhatOthersFound) {
   LILO_NEED_DATA(capture);
   const RecordingInfo info = read_info(test::data_path(capture));
   const Json json = Json::parse(to_json("real", info));
+  EXPECT_EQ(json["link_type"], "EN10MB");
   EXPECT_EQ(json["sensor"]["model"], "vlp16");
   EXPECT_EQ(json["sensor"]["product_id"], 0x22);
   EXPECT_EQ(json["sensor"]["return_modes"], Json::array({"strongest"}));
@@ -84,6 +85,7 @@ TEST(Info, RealCaptureHoldsWhatOthersFound) {
   const std::string text = to_text("real", info);
   EXPECT_NE(text.find("2016-01-21 08:18:02"), std::string::npos) << text;  // of its GPRMC
   EXPECT_NE(text.find("VLP-16, strongest return"), std::string::npos) << text;
+  EXPECT_NE(text.find("frames of Ethernet"), std::string::npos) << text;
 }
 
 TEST(Info, KittiFolderIsADataSet) {

@@ -81,6 +81,7 @@ std::string to_json(const std::string& name, const RecordingInfo& info) {
   for (std::size_t k = 0; k < kClocks.size(); ++k) clock[kClocks[k]] = info.clock_scans[k];
   Json json;
   json["recording"] = name;
+  json["link_type"] = info.link_type;
   json["sensor"] = sensor_json(info);
   json["calibration"] = {{"origin", name_of(info.sensor.calibration, kOrigins)},
                          {"progress", info.sensor.calibration_progress},

@@ -65,10 +65,20 @@ std::string sensor_text(const RecordingInfo& info) {
   return text + ", " + modes + " return";
 }
 
+/// libpcap's names say little to most.
+std::string link_text(const std::string& name) {
+  if (name == "EN10MB") return "Ethernet";
+  if (name == "LINUX_SLL") return "Linux cooked v1";
+  if (name == "LINUX_SLL2") return "Linux cooked v2";
+  if (name == "RAW" || name == "DLT_RAW") return "raw IP";
+  return name;
+}
+
 std::string captured_text(const RecordingInfo& info) {
   const ReceivedSpan& span = info.received;
   std::string text =
       fmt::format("{} UTC, {:.1f} s", utc(span.first_ns), seconds(span.last_ns - span.first_ns));
+  if (!info.link_type.empty()) text += ", frames of " + link_text(info.link_type);
   const std::uint32_t ip = info.sensor.sensor_ipv4;
   if (ip == 0) return text;
   return text + fmt::format(", from {}.{}.{}.{}", ip >> 24U, ip >> 16U & 0xFFU, ip >> 8U & 0xFFU,

@@ -63,6 +63,7 @@ RecordingInfo read_recording(ScanSource& source, const std::function<void(const 
   info.driver_counts = source.driver_counts();
   info.source_counts = source.source_counts();
   info.received = source.received();
+  info.link_type = source.link_type();
   info.failure = source.error();
   std::uint64_t lost_in_scans = 0;
   for (const ScanLoss& loss : info.losses) lost_in_scans += loss.packets;

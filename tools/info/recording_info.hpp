@@ -25,7 +25,8 @@ struct RecordingInfo {
   DriverCounts driver_counts;
   SourceCounts source_counts;
   ReceivedSpan received;
-  std::string failure;  ///< why the recording ended early; empty when it did not
+  std::string link_type;  ///< see PacketSource
+  std::string failure;    ///< why the recording ended early; empty when it did not
 
   std::array<bool, 3> return_modes{};          ///< seen, by ReturnMode
   std::array<std::uint64_t, 3> clock_scans{};  ///< scans by ClockSource
