@@ -85,6 +85,16 @@ INSTANTIATE_TEST_SUITE_P(
                     VlpCase{"dual_rpm1200", {.rpm = 1200, .mode = Mode::dual}}),
     [](const auto& test_case) { return test_case.param.name; });
 
+// Who takes one echo of a firing takes the first: see Scan::returns.
+void expect_order(const Scan& scan, ReturnKind first, ReturnKind second) {
+  for (std::size_t i = 1; i < scan.returns.size(); ++i) {
+    const Return &before = scan.returns[i - 1], &r = scan.returns[i];
+    if (before.t_ns != r.t_ns || before.ring != r.ring) continue;
+    ASSERT_EQ(before.kind, first);
+    ASSERT_EQ(r.kind, second);
+  }
+}
+
 TEST(Vlp16Dual, BothEchoesAreKeptAndEqualOnesOnce) {
   const auto packets = test::vlp16_packets(350, {.mode = Mode::dual});
   const Outcome out = test::build(packets);
@@ -103,6 +113,7 @@ TEST(Vlp16Dual, BothEchoesAreKeptAndEqualOnesOnce) {
   EXPECT_GT(glass, 1000U);
   EXPECT_EQ(glass, wall);  // each pane echo has a wall behind it
   EXPECT_GT(both, 1000U);
+  expect_order(out.scans[0], ReturnKind::last, ReturnKind::strongest);
 }
 
 TEST(Vlp16Dual, ChoiceOfReturnsIsKept) {
@@ -201,6 +212,7 @@ TEST(Hdl64eDual, BothEchoesAreKeptAndEqualOnesOnce) {
   }
   EXPECT_GT(glass, 1000U);
   EXPECT_EQ(glass, wall);
+  expect_order(out.scans[0], ReturnKind::strongest, ReturnKind::last);
 }
 
 // S2 manual, firing time table: laser 5 is the second of the second group.
