@@ -239,8 +239,8 @@ std::vector<Key> realtime_keys() {
               "Pins the odometry thread to this core; -1: not pinned."),
       integer("realtime.worker_priority", LILO_MEMBER(realtime.worker_priority), 0, 99, "",
               kRestart,
-              "SCHED_FIFO priority of the odometry thread, the receiver one above; 0: the normal "
-              "policy. Below 50 stays below the kernel's interrupt threads."),
+              "SCHED_FIFO priority of the odometry thread, the receiver one above, the publisher one "
+              "below; 0: the normal policy. Below 50 stays below the kernel's interrupt threads."),
       boolean("realtime.lock_memory", LILO_MEMBER(realtime.lock_memory), kRestart,
               "Locks all memory (mlockall), so that no page fault delays a pose."),
       integer("realtime.reserve_mb", LILO_MEMBER(realtime.reserve_mb), 0, 4096, "", kRestart,

@@ -89,6 +89,9 @@ RealtimeReport Engine::start() {
     *policy = start.policy;
     for (std::string& refusal : start.refusals) report.refusals.push_back(std::move(refusal));
   }
+  // One below: it is there at once when a pose is, and never in the way of the next one.
+  if (priority > 1) note(use_fifo_in_this_thread(priority - 1));
+  report.publisher = policy_of_this_thread();
   report.locked_memory_kb = locked_memory_kb();
   return report;
 }

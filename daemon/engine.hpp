@@ -23,7 +23,7 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Starts both threads and returns once each has its policy.
+  /// Starts both threads and returns once each has its policy, and the calling thread its own.
   RealtimeReport start();
   /// Ends both threads and waits for them.
   void stop();

@@ -84,6 +84,11 @@ std::optional<std::string> use_fifo_in_this_thread(int priority) {
                      priority, reason(error));
 }
 
+void use_normal_policy_in_this_thread() {
+  const sched_param parameters{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &parameters);
+}
+
 std::optional<std::string> lock_all_memory(std::size_t reserve_bytes) {
   // Memory that went back to the kernel would fault when it is asked for again. One heap for all
   // threads, because a thread's own grows by page faults even when the future is locked; and in

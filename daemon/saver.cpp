@@ -1,6 +1,7 @@
 #include "daemon/saver.hpp"
 
 #include "daemon/metrics_file.hpp"
+#include "daemon/realtime.hpp"
 
 #include <boost/asio/post.hpp>
 
@@ -24,6 +25,7 @@ Saver::~Saver() {
 void Saver::write(const std::string& file, std::size_t count, std::function<std::string()> make,
                   SaveDone done) {
   thread_ = std::thread([this, file, count, make = std::move(make), done = std::move(done)] {
+    use_normal_policy_in_this_thread();  // not the publisher's, which it would inherit
     const bool written = replace_file(file, make());
     SaveResult result{.error = written ? "" : "cannot write " + file, .file = file, .count = count};
     boost::asio::post(io_, [this, result, done] {

@@ -27,6 +27,7 @@ void log_report(const RealtimeReport& report) {
   };
   log_thread("worker", report.worker);
   log_thread("receiver", report.receiver);
+  log_thread("publisher", report.publisher);
   spdlog::info("locked memory: {} kB", report.locked_memory_kb);
   for (const std::string& refusal : report.refusals) {
     spdlog::warn("NOT real time as configured: {}", refusal);

@@ -40,6 +40,8 @@ TEST(Realtime, FifoIsInForceOrRefused) {
     EXPECT_EQ(policy.policy, refusal ? "SCHED_OTHER" : "SCHED_FIFO");
     EXPECT_EQ(policy.priority, refusal ? 0 : 7);
     EXPECT_EQ(sched_getscheduler(0), refusal ? SCHED_OTHER : SCHED_FIFO);
+    use_normal_policy_in_this_thread();
+    EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER);
   });
 }
 
