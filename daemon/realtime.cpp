@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cerrno>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -55,11 +54,12 @@ void lock_what_we_use() {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe");
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {
-    std::uintptr_t begin = 0, end = 0;
+    void *begin = nullptr, *end = nullptr;
     std::array<char, 5> access{};
-    if (std::sscanf(line.c_str(), "%lx-%lx %4s", &begin, &end, access.data()) != 3) continue;
+    if (std::sscanf(line.c_str(), "%p-%p %4s", &begin, &end, access.data()) != 3) continue;
     const bool data = access[0] == 'r' && access[1] == 'w';
-    if (data || line.ends_with(program)) mlock(reinterpret_cast<void*>(begin), end - begin);
+    const auto bytes = static_cast<char*>(end) - static_cast<char*>(begin);
+    if (data || line.ends_with(program)) mlock(begin, static_cast<std::size_t>(bytes));
   }
 }
 

@@ -60,10 +60,10 @@ void* malloc(std::size_t size) {
   return real(size);
 }
 
-void* realloc(void* memory, std::size_t size) {
+void* realloc(void* ptr, std::size_t size) {
   static const auto real = next<void* (*)(void*, std::size_t)>("realloc");
   count();
-  return real(memory, size);
+  return real(ptr, size);
 }
 
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
@@ -72,9 +72,9 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
   return real(alignment, size);
 }
 
-int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
+int posix_memalign(void** memptr, std::size_t alignment, std::size_t size) {
   static const auto real = next<int (*)(void**, std::size_t, std::size_t)>("posix_memalign");
   count();
-  return real(memory, alignment, size);
+  return real(memptr, alignment, size);
 }
 }

@@ -52,12 +52,13 @@ void compare(const json& golden, const json& actual, const std::string& path) {
   } else if (golden.is_structured() && golden.type() == actual.type()) {
     EXPECT_EQ(golden.size(), actual.size()) << path;
     for (const auto& [key, value] : golden.items()) {
-      const bool there = golden.is_array() ? std::stoul(key) < actual.size() : actual.contains(key);
-      if (!there) {
-        ADD_FAILURE() << path << '/' << key << " is missing";
-        continue;
+      const json::json_pointer at("/" + key);
+      const std::string inner = std::string(path).append("/").append(key);
+      if (actual.contains(at)) {
+        compare(value, actual[at], inner);
+      } else {
+        ADD_FAILURE() << inner << " is missing";
       }
-      compare(value, golden.is_array() ? actual[std::stoul(key)] : actual[key], path + '/' + key);
     }
   } else {
     EXPECT_EQ(golden, actual) << path;
