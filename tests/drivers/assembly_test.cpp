@@ -75,6 +75,19 @@ TEST(Assembly, OneLostPacketIsCountedAndItsHoleMarked) {
   expect_no_ghosts(out);
 }
 
+TEST(Assembly, FiveLostPacketsMakeTheScanPartial) {
+  auto packets = four_turns();
+  drop(packets, 30, 5);  // 23.9 degrees
+  const Outcome out = build(packets);
+  ASSERT_EQ(out.scans.size(), 4U);
+  EXPECT_EQ(out.counts.packets_lost, 5U);
+  EXPECT_EQ(out.scans[0].packets.lost, 5U);
+  EXPECT_FALSE(out.scans[0].complete);
+  EXPECT_NEAR(static_cast<double>(out.scans[0].hole_width_rad), 23.7 * kDeg, 0.6 * kDeg);
+  EXPECT_TRUE(out.scans[1].complete);
+  expect_no_ghosts(out);
+}
+
 TEST(Assembly, ALostSectorMakesTheScanPartial) {
   auto packets = four_turns();
   drop(packets, 100, 19);  // 90.8 degrees in the second scan

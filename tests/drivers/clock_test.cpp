@@ -200,6 +200,16 @@ TEST(PositionPacket, NeedsPulseAndFix) {
       test::position_packet(3'700'000'000, 2, test::gprmc(9, 0, 5, 14, 5, 2024), 0).bytes));
 }
 
+TEST(PositionPacket, SentenceMayFillItsFieldToTheLastByte) {
+  const std::string sentence = test::gprmc(9, 0, 5, 14, 5, 2024);
+  const std::string bare = sentence.substr(0, sentence.size() - 2);  // neither CR LF nor NUL
+  auto packet =
+      test::position_packet(5'000'000, 2, bare + std::string(512 - 0xCE - bare.size(), '$'), 0);
+  EXPECT_TRUE(parse_position_packet(packet.bytes)->synchronized());
+  packet = test::position_packet(5'000'000, 2, std::string(512 - 0xCE, 'A'), 0);
+  EXPECT_FALSE(parse_position_packet(packet.bytes)->synchronized());
+}
+
 TEST(ScanTimes, CrossTheHourUnbroken) {
   const auto packets = test::vlp16_packets(
       320, {.start_past_hour_s = 3599.8, .start_received_ns = kHour - 200'000'000});

@@ -233,6 +233,13 @@ TEST(Hdl64eTimes, FollowTheManualsTable) {
   EXPECT_EQ(offsets_ns, expected_ns);
 }
 
+// Manual: 24 or, in dual mode, 12 firing sequences of 55.296 us a packet.
+TEST(Vlp16, PacketPeriodFollowsTheMode) {
+  EXPECT_DOUBLE_EQ(test::build(test::vlp16_packets(2, {})).status.packet_period_us, 1327.104);
+  EXPECT_DOUBLE_EQ(
+      test::build(test::vlp16_packets(2, {.mode = Mode::dual})).status.packet_period_us, 663.552);
+}
+
 TEST(FiringTable, IsChosenByThePacketPeriod) {
   EXPECT_EQ(find_firing_table(288.0e3, false)->shot_ns, 48000);
   EXPECT_EQ(find_firing_table(345.6e3, false)->shot_ns, 57600);
