@@ -77,7 +77,7 @@ std::vector<test::TimedPacket> blind_first(std::vector<test::TimedPacket> packet
 std::vector<test::TimedPacket> vlp16(test::Mode mode, std::uint8_t product = 0x22) {
   const int turn = mode == test::Mode::dual ? 151 : 76;
   auto packets = blind_first(test::vlp16_packets(4 * turn, {.mode = mode}, product), turn);
-  const auto late = static_cast<std::ptrdiff_t>(2 * turn + 9);
+  const std::ptrdiff_t late = std::ptrdiff_t{2} * turn + 9;
   std::swap(packets[static_cast<std::size_t>(late)], packets[static_cast<std::size_t>(late) + 1]);
   const test::TimedPacket twice = packets[static_cast<std::size_t>(late)];
   packets.insert(packets.begin() + late + 6, twice);

@@ -86,16 +86,19 @@ int azimuth_at(const test::TimedPacket& packet, std::size_t block) {
   return wire::u16(packet.bytes.data() + 100 * block + 2);
 }
 
+constexpr std::size_t kPlaces = std::size_t{12} * 32;
+
 void add_packet(const test::TimedPacket& packet,
-                std::array<std::vector<WireReturn>, 12 * 32>& all) {
+                std::array<std::vector<WireReturn>, kPlaces>& all) {
   const auto turned = [&](std::size_t from, std::size_t to) {
     return std::remainder(azimuth_at(packet, to) - azimuth_at(packet, from), 36000.0);
   };
   const double mean = turned(0, 10) / 5.0;
   for (std::size_t b = 0; b < 12; ++b)
     for (std::size_t c = 0; c < 32; ++c) {
+      const std::size_t sequence = c / 16, laser = c % 16;
       const double part =
-          (55.296 * static_cast<double>(c / 16) + 2.304 * static_cast<double>(c % 16)) / 110.592;
+          (55.296 * static_cast<double>(sequence) + 2.304 * static_cast<double>(laser)) / 110.592;
       const double own = azimuth_at(packet, b);
       const double reference = b >= 10      ? own
                                : b % 2 == 1 ? azimuth_at(packet, b + 1)
@@ -161,7 +164,7 @@ TEST(RealVlp16Dual, EveryPointOfTheReferenceIsFoundOrExplained) {
   const auto cloud = read_cloud();
   ASSERT_EQ(cloud.size(), 14831U);
   const auto packets = test::packets_of_bag(test::data_path(kBag));
-  std::array<std::vector<WireReturn>, 12 * 32> wire_returns;
+  std::array<std::vector<WireReturn>, kPlaces> wire_returns;
   for (const test::TimedPacket& packet : packets) add_packet(packet, wire_returns);
   const test::Outcome out = test::build(packets);
   ASSERT_EQ(out.scans.size(), 3U);
