@@ -9,7 +9,7 @@
 namespace lilo::paper {
 
 /// One of the two local maps P^l_E and P^l_S of Section 4: a voxel-reduced cloud in the odometry
-/// frame and its kd-tree. Both are rebuilt at every update, as the paper does.
+/// frame and its kd-tree. Both are rebuilt at every update.
 class LocalMap {
  public:
   LocalMap(double voxel_m, double radius_m) : voxel_m_(voxel_m), radius_m_(radius_m) {}
@@ -27,7 +27,7 @@ class LocalMap {
   double voxel_m_;
   double radius_m_;
   Cloud::Ptr cloud_{new Cloud};
-  pcl::KdTreeFLANN<Point> tree_;
+  pcl::KdTreeFLANN<Point> tree_{false};  // unsorted: a covariance knows no order
   mutable std::vector<int> indices_;
   mutable std::vector<float> squared_distances_;
 };

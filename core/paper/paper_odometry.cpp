@@ -113,8 +113,7 @@ Alignment PaperOdometry::align_to_map(const Reduced& scan, double dt_s) const {
   // The sensor may be moving when it is switched on: until a motion is known the guess is off by a
   // whole step, and the search begins wide.
   constexpr std::array<double, 3> kSearch = {3.0, 2.0, 1.0};
-  const bool motion_known = scan_count_ >= 3;
-  for (std::size_t k = motion_known ? kSearch.size() - 1 : 0; k < kSearch.size(); ++k) {
+  for (std::size_t k = motion_known() ? kSearch.size() - 1 : 0; k < kSearch.size(); ++k) {
     alignment = align(*scan.edges, *scan.surfaces, edge_map_, surface_map_, alignment.T_odom_sensor,
                       kSearch[k] * config_.paper.neighbourhood_m, config_.paper);
   }
@@ -129,6 +128,15 @@ void PaperOdometry::advance(const Alignment& alignment, double dt_s) {
 }
 
 void PaperOdometry::update_maps(const Reduced& scan) {
+  // The paper cleans its maps "as the robot translation increases": a scan from where the maps last
+  // grew would add cost and the noise of its pose, but no view.
+  constexpr double kKeyframe_m = 1.0;
+  constexpr double kKeyframe_rad = 0.035;
+  const Pose since = T_odom_keyframe_.inverse() * T_odom_sensor_;
+  const bool near =
+      since.translation_m.norm() < kKeyframe_m && so3_log(since.rotation).norm() < kKeyframe_rad;
+  if (motion_known() && near) return;
+  T_odom_keyframe_ = T_odom_sensor_;
   edge_map_.update({scan.edges.get()}, T_odom_sensor_);
   surface_map_.update({scan.surfaces.get()}, T_odom_sensor_);
 }

@@ -24,13 +24,18 @@ class PaperOdometry {
   [[nodiscard]] Reduced reduce(const Features& features) const;
   [[nodiscard]] Alignment align_to_map(const Reduced& scan, double dt_s) const;
   void advance(const Alignment& alignment, double dt_s);
+  /// False for the first scans, whose prediction knows nothing of a start in motion.
+  [[nodiscard]] bool motion_known() const { return scan_count_ >= 3; }
+  /// Adds the scan to both maps when the sensor has moved 1 m or turned 2 degrees since the last
+  /// time (Section 4 is silent on how often).
   void update_maps(const Reduced& scan);
   [[nodiscard]] Estimate estimate(const Scan& scan, const Alignment& alignment) const;
 
   OdometryConfig config_;
   LocalMap edge_map_, surface_map_;
   Pose T_odom_sensor_;
-  Twist twist_;  // of the sensor over the last interval
+  Pose T_odom_keyframe_;  // where the maps last grew
+  Twist twist_;           // of the sensor over the last interval
   std::int64_t last_end_ns_ = 0;
   int scan_count_ = 0;
 };

@@ -4,6 +4,8 @@
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace lilo::paper {
 namespace {
@@ -54,28 +56,48 @@ struct Normal {
   }
 };
 
-void add_edges(const Cloud& edges, const LocalMap& map, const Pose& T, double search_m,
-               double huber_m, Normal& normal) {
-  for (const Point& point : edges) {
-    const Eigen::Vector3d p = point.getVector3fMap().cast<double>();
-    Point q = point;
-    q.getVector3fMap() = (T * p).cast<float>();
-    const Primitive line = fit_line(map.cloud(), map.neighbours(q, search_m));
+/// The line or plane a feature is matched with, and where the feature was when it was sought.
+struct Match {
+  Eigen::Vector3f sought_at = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
+  Primitive primitive;
+};
+using Matches = std::vector<Match>;
+
+struct Search {
+  const LocalMap& map;
+  double radius_m;
+  Primitive (*fit)(const Cloud&, const std::vector<int>&);
+};
+
+/// Seeks again when the feature has moved by a part of the neighbourhood since it was sought.
+void update(const Search& search, const Point& point, const Pose& T, Match& match) {
+  constexpr double kStay = 0.15;
+  Point q = point;
+  q.getVector3fMap() = (T * point.getVector3fMap().cast<double>()).cast<float>();
+  const auto stay_m = static_cast<float>(kStay * search.radius_m);
+  if ((q.getVector3fMap() - match.sought_at).squaredNorm() < stay_m * stay_m) return;
+  match.sought_at = q.getVector3fMap();
+  match.primitive = search.fit(search.map.cloud(), search.map.neighbours(q, search.radius_m));
+}
+
+void add_edges(const Cloud& edges, const Search& search, const Pose& T, double huber_m,
+               Matches& matches, Normal& normal) {
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    update(search, edges[k], T, matches[k]);
+    const Primitive& line = matches[k].primitive;
     if (!line.valid) continue;
-    const LineResidual r = line_residual(T, p, line);
+    const LineResidual r = line_residual(T, edges[k].getVector3fMap().cast<double>(), line);
     normal.add(r.jacobian, r.value, r.value.squaredNorm(), huber_m);
   }
 }
 
-void add_surfaces(const Cloud& surfaces, const LocalMap& map, const Pose& T, double search_m,
-                  double huber_m, Normal& normal) {
-  for (const Point& point : surfaces) {
-    const Eigen::Vector3d p = point.getVector3fMap().cast<double>();
-    Point q = point;
-    q.getVector3fMap() = (T * p).cast<float>();
-    const Primitive plane = fit_plane(map.cloud(), map.neighbours(q, search_m));
+void add_surfaces(const Cloud& surfaces, const Search& search, const Pose& T, double huber_m,
+                  Matches& matches, Normal& normal) {
+  for (std::size_t k = 0; k < surfaces.size(); ++k) {
+    update(search, surfaces[k], T, matches[k]);
+    const Primitive& plane = matches[k].primitive;
     if (!plane.valid) continue;
-    const PlaneResidual r = plane_residual(T, p, plane);
+    const PlaneResidual r = plane_residual(T, surfaces[k].getVector3fMap().cast<double>(), plane);
     normal.add(r.jacobian, Eigen::Matrix<double, 1, 1>(r.value), r.value * r.value, huber_m);
   }
 }
@@ -124,10 +146,14 @@ Alignment align(const Cloud& edges, const Cloud& surfaces, const LocalMap& edge_
   Alignment result;
   result.T_odom_sensor = guess;
   Pose& T = result.T_odom_sensor;
+  const Search lines{edge_map, search_m, fit_line};
+  const Search planes{surface_map, search_m, fit_plane};
+  Matches edge_matches(edges.size());
+  Matches surface_matches(surfaces.size());
   while (result.iterations < config.max_iterations && !result.converged) {
     Normal normal;
-    add_edges(edges, edge_map, T, search_m, config.huber_m, normal);
-    add_surfaces(surfaces, surface_map, T, search_m, config.huber_m, normal);
+    add_edges(edges, lines, T, config.huber_m, edge_matches, normal);
+    add_surfaces(surfaces, planes, T, config.huber_m, surface_matches, normal);
     result.correspondences = normal.count;
     if (normal.count < kMinCorrespondences) break;
     const Vector6d step = normal.H.ldlt().solve(normal.b);

@@ -48,7 +48,9 @@ struct Alignment {
 };
 
 /// Eq. 21: T* = argmin sum f_E^2 + sum f_S^2 by Gauss-Newton from `guess`, Huber weights,
-/// correspondences within `search_m` sought again at every step.
+/// correspondences within `search_m`. The paper is silent on how often they are sought: here again
+/// when a step has moved the feature by 15 % of `search_m`, over which a neighbourhood hardly
+/// changes.
 Alignment align(const Cloud& edges, const Cloud& surfaces, const LocalMap& edge_map,
                 const LocalMap& surface_map, const Pose& guess, double search_m,
                 const PaperConfig& config);

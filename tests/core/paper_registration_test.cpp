@@ -93,19 +93,50 @@ OdometryConfig config_16() {
   return config;
 }
 
+Scan second_scan(const test::Scene& scene, const Pose& T) {
+  Scan scan = test::still_scan_of(scene, k16, T);
+  scan.index = 1;
+  scan.motion_compensated = true;
+  scan.start_ns += 100'000'000;
+  scan.end_ns += 100'000'000;
+  return scan;
+}
+
 TEST(PaperOdometry, RecoversAKnownStepBetweenTwoScans) {
   const Pose step{so3_exp({0.01, -0.015, 0.05}), {0.4, -0.1, 0.05}};
   Odometry odometry(config_16());
   odometry.process(test::still_scan_of(test::yard(), k16, {}));
-  Scan second = test::still_scan_of(test::yard(), k16, step);
-  second.index = 1;
-  second.motion_compensated = true;
-  second.start_ns += 100'000'000;
-  second.end_ns += 100'000'000;
-  const Estimate e = odometry.process(second);
+  const Estimate e = odometry.process(second_scan(test::yard(), step));
   const Pose error = step.inverse() * e.T_odom_sensor;
   EXPECT_LT(error.translation_m.norm(), 0.02);
   EXPECT_LT(so3_log(error.rotation).norm(), 0.002);
+}
+
+/// The yard as seen by a world whose axes are turned by `yaw_rad` about z.
+test::Scene turned(test::Scene scene, double yaw_rad) {
+  const Eigen::Quaterniond R = so3_exp({0.0, 0.0, yaw_rad});
+  for (test::Plane& plane : scene.planes) plane.normal = R * plane.normal;
+  for (test::Pole& pole : scene.poles) {
+    const Eigen::Vector3d at = R * Eigen::Vector3d(pole.x_m, pole.y_m, 0.0);
+    pole.x_m = at.x();
+    pole.y_m = at.y();
+  }
+  return scene;
+}
+
+TEST(PaperOdometry, RotatingTheProblemRotatesTheAnswer) {
+  const Pose step{so3_exp({0.01, -0.015, 0.05}), {0.4, -0.1, 0.05}};
+  for (const double yaw_rad : {0.0, 0.7, -2.1}) {
+    const Pose turn{so3_exp({0.0, 0.0, yaw_rad}), Eigen::Vector3d::Zero()};
+    const Pose expected = turn * step * turn.inverse();
+    const test::Scene scene = turned(test::yard(), yaw_rad);
+    Odometry odometry(config_16());
+    odometry.process(test::still_scan_of(scene, k16, {}));
+    const Pose found = odometry.process(second_scan(scene, expected)).T_odom_sensor;
+    const Pose error = expected.inverse() * found;
+    EXPECT_LT(error.translation_m.norm(), 0.03) << yaw_rad;
+    EXPECT_LT(so3_log(error.rotation).norm(), 0.003) << yaw_rad;
+  }
 }
 
 /// Error of the last pose after two seconds of speeding up to `speed_mps` and turning.
