@@ -2,6 +2,7 @@
 
 #include "core/pose.hpp"
 
+#include <array>
 #include <cstdint>
 
 namespace lilo {
@@ -20,6 +21,15 @@ struct Twist {
   Eigen::Vector3d angular_radps = Eigen::Vector3d::Zero();
 };
 
+/// A direction of motion of which the scan said too little: there the pose is mostly prediction.
+struct WeakDirection {
+  /// Unit vector, order x y z rx ry rz (m and rad, as in `covariance`), in the sensor's frame.
+  Vector6d direction = Vector6d::Zero();
+  /// Part of the information on it that came from the scan: 0 nothing, the prediction alone; 1 all.
+  double from_scan = 0.0;
+};
+inline constexpr int kMaxWeakDirections = 6;
+
 /// What the odometry says of one scan.
 struct Estimate {
   std::uint64_t scan_index = 0;
@@ -31,6 +41,9 @@ struct Estimate {
   /// Valid only where has_covariance is set.
   Matrix6d covariance = Matrix6d::Zero();
   bool has_covariance = false;
+  /// The first `weak_count` are valid, the weakest first. With any, the status is not `tracking`.
+  std::array<WeakDirection, kMaxWeakDirections> weak_directions{};
+  int weak_count = 0;
 
   int edge_count = 0, surface_count = 0, ground_count = 0;  ///< features used
   int map_edge_count = 0, map_surface_count = 0;            ///< points the local map holds

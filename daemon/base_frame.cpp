@@ -39,6 +39,8 @@ Estimate in_base_frame(const Estimate& sensor, const Pose& T_base_sensor) {
       T_base_sensor.rotation * sensor.twist.linear_mps - angular.cross(T_base_sensor.translation_m);
   const Matrix6d A = adjoint(T_base_sensor);
   base.covariance = A * sensor.covariance * A.transpose();
+  for (WeakDirection& weak : base.weak_directions)
+    weak.direction = (A * weak.direction).normalized();
   return base;
 }
 

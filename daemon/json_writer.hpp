@@ -16,6 +16,7 @@ class JsonWriter {
 
   JsonWriter() { put('{'); }
 
+  /// Items of an array have an empty name.
   void begin_object(std::string_view name);
   void end_object();
   void begin_array(std::string_view name);

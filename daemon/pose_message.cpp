@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace lilo {
@@ -10,7 +12,8 @@ namespace {
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 // Decimals: a tenth of a micrometre, and a quaternion good to 1e-9 rad.
-constexpr int kMetreDecimals = 7, kQuaternionDecimals = 10, kVelocityDecimals = 6;
+constexpr int kMetreDecimals = 7, kQuaternionDecimals = 10, kVelocityDecimals = 6,
+              kDirectionDecimals = 3;
 
 void write_vector(JsonWriter& out, std::string_view key, const Eigen::Vector3d& v, int decimals) {
   out.begin_object(key);
@@ -59,8 +62,32 @@ void write_covariance(JsonWriter& out, const Estimate& estimate) {
   out.end_array();
 }
 
+void write_weak_direction(JsonWriter& out, const WeakDirection& weak) {
+  out.begin_object("");
+  out.begin_array("direction");
+  for (const double component : weak.direction) out.number("", component, kDirectionDecimals);
+  out.end_array();
+  out.number("from_scan", weak.from_scan, kDirectionDecimals);
+  out.end_object();
+}
+
+void write_weak_directions(JsonWriter& out, const Estimate& estimate) {
+  const auto& all = estimate.weak_directions;
+  const auto end = all.begin() + std::clamp(estimate.weak_count, 0, kMaxWeakDirections);
+  const bool finite = std::all_of(all.begin(), end, [](const WeakDirection& weak) {
+    return weak.direction.allFinite() && std::isfinite(weak.from_scan);
+  });
+  if (end == all.begin() || !finite) return;
+  out.begin_array("weak_directions");
+  std::for_each(all.begin(), end, [&](const WeakDirection& w) { write_weak_direction(out, w); });
+  out.end_array();
+}
+
+/// What a datagram has room for; the covariance goes first.
+enum class Optional { covariance_and_weak, weak_alone, none };
+
 std::string_view write(const PoseMessageContext& context, const PoseReport& report,
-                       std::int64_t now_ns, bool with_covariance, JsonWriter& out) {
+                       std::int64_t now_ns, Optional optional, JsonWriter& out) {
   const Estimate& estimate = report.estimate;
   out = JsonWriter();
   out.text("v", kProtocolVersion);
@@ -75,7 +102,8 @@ std::string_view write(const PoseMessageContext& context, const PoseReport& repo
   write_vector(out, "position", estimate.T_odom_sensor.translation_m, kMetreDecimals);
   write_orientation(out, estimate.T_odom_sensor.rotation);
   write_twist(out, estimate);
-  if (with_covariance) write_covariance(out, estimate);
+  if (optional == Optional::covariance_and_weak) write_covariance(out, estimate);
+  if (optional != Optional::none) write_weak_directions(out, estimate);
   out.number("latency_ms", static_cast<double>(now_ns - report.last_packet_ns) * 1e-6, 3);
   out.unsigned_integer("lost_packets", report.packets.lost);
   out.end_object();
@@ -107,8 +135,13 @@ std::string_view write_pose(const PoseMessageContext& context, const PoseReport&
                             std::int64_t now_ns, JsonWriter& out) {
   const Pose& pose = report.estimate.T_odom_sensor;
   if (!pose.translation_m.allFinite() || !pose.rotation.coeffs().allFinite()) return {};
-  const std::string_view whole = write(context, report, now_ns, true, out);
-  return whole.empty() ? write(context, report, now_ns, false, out) : whole;
+  std::string_view text;
+  for (const Optional optional :
+       {Optional::covariance_and_weak, Optional::weak_alone, Optional::none}) {
+    text = write(context, report, now_ns, optional, out);
+    if (!text.empty()) break;
+  }
+  return text;
 }
 
 }  // namespace lilo

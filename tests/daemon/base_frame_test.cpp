@@ -64,5 +64,22 @@ TEST(BaseFrame, CovarianceIsThatOfTheSamples) {
   EXPECT_LT((sampled - base.covariance).norm(), 0.03 * base.covariance.norm());
 }
 
+// A sensor that looks to the left, in a corridor along its y axis: the base drives along x. And a
+// weak turn about the sensor's upright axis moves the base, which lies half a metre off.
+TEST(BaseFrame, WeakDirectionsTurnWithIt) {
+  const Pose mount = to_pose({.y_m = 0.5, .yaw_rad = -std::acos(0.0)});
+  Estimate sensor;
+  sensor.weak_count = 2;
+  sensor.weak_directions[0] = {Vector6d::Unit(1), 0.25};
+  sensor.weak_directions[1] = {Vector6d::Unit(5), 0.5};
+  const Estimate base = in_base_frame(sensor, mount);
+  EXPECT_EQ(base.weak_count, 2);
+  EXPECT_TRUE(base.weak_directions[0].direction.isApprox(Vector6d::Unit(0), 1e-12));
+  EXPECT_EQ(base.weak_directions[0].from_scan, 0.25);
+  Vector6d turn = Vector6d::Unit(5);
+  turn.x() = 0.5;  // (0, 0.5, 0) x z: the base's origin swings towards x
+  EXPECT_TRUE(base.weak_directions[1].direction.isApprox(turn.normalized(), 1e-12));
+}
+
 }  // namespace
 }  // namespace lilo

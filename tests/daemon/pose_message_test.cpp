@@ -1,11 +1,14 @@
 #include "daemon/pose_message.hpp"
 
+#include "tests/daemon/schema.hpp"
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <random>
 #include <string>
+#include <vector>
 
 namespace lilo {
 namespace {
@@ -89,6 +92,43 @@ TEST(PoseMessage, LeavesOutWhatIsNotKnown) {
     EXPECT_FALSE(m["pose"].contains("twist"));
     EXPECT_TRUE(m["pose"].contains("position")) << "it keeps sending while lost";
   }
+}
+
+Estimate weak_along(const std::vector<Vector6d>& directions) {
+  Estimate e = a_report().estimate;
+  e.status = TrackingStatus::degraded;
+  for (const Vector6d& direction : directions)
+    e.weak_directions[static_cast<std::size_t>(e.weak_count++)] = {direction, 0.0626};
+  return e;
+}
+
+// A corridor: nothing says how far one went along it, and little how far one turned about it.
+TEST(PoseMessage, NamesWeakDirections) {
+  PoseReport report = a_report();
+  EXPECT_FALSE(message_of(report)["pose"].contains("weak_directions"));
+  report.estimate = weak_along({Vector6d::Unit(0), -Vector6d::Unit(3)});
+  const json m = message_of(report);
+  EXPECT_EQ(violations(protocol_schema(), m), std::vector<std::string>{}) << m;
+  const json& weak = m["pose"]["weak_directions"];
+  ASSERT_EQ(weak.size(), 2U);
+  EXPECT_EQ(weak[0]["direction"], json({1, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(weak[1]["direction"][3], -1);
+  EXPECT_DOUBLE_EQ(weak[0]["from_scan"].get<double>(), 0.063) << "three decimals";
+  EXPECT_TRUE(m["pose"].contains("covariance")) << "there is room for both";
+}
+
+// Where to trust the pose is worth more than its variance.
+TEST(PoseMessage, WeakDirectionsOutlastTheCovariance) {
+  PoseReport report = a_report();
+  const Vector6d mixed = Vector6d::Constant(-1.0).normalized();
+  report.estimate = weak_along({mixed, mixed, mixed, mixed, mixed, mixed});
+  report.estimate.covariance = Matrix6d::Constant(-1.2345e-101);
+  const json m = message_of(report);
+  EXPECT_EQ(violations(protocol_schema(), m), std::vector<std::string>{}) << m;
+  EXPECT_EQ(m["pose"]["weak_directions"].size(), 6U);
+  EXPECT_FALSE(m["pose"].contains("covariance"));
+  report.estimate.weak_directions[5].from_scan = std::nan("");
+  EXPECT_FALSE(message_of(report)["pose"].contains("weak_directions"));
 }
 
 TEST(PoseMessage, NothingThatIsNotFiniteIsSent) {
