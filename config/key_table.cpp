@@ -38,6 +38,11 @@ std::vector<Key> sensor_keys() {
            "Farther returns are left out."),
       choice("sensor.returns", LILO_MEMBER(sensor.returns), {"strongest", "last", "both"}, kRestart,
              "Which echoes of a dual-return sensor become part of the scan."),
+      angle("sensor.kitti_elevation_offset_deg", LILO_MEMBER(sensor.kitti_elevation_offset_rad),
+            -1.0, 1.0, kRestart,
+            "KITTI folders only, for the tools: added to the elevation of every return; 0.205 "
+            "corrects the data set's calibration as IMLS-SLAM found it. Scans of KITTI folders are "
+            "deskewed already and are not deskewed again."),
   };
 }
 
@@ -237,10 +242,10 @@ std::vector<Key> realtime_keys() {
   return {
       integer("realtime.worker_cpu", LILO_MEMBER(realtime.worker_cpu), -1, 1023, "", kRestart,
               "Pins the odometry thread to this core; -1: not pinned."),
-      integer("realtime.worker_priority", LILO_MEMBER(realtime.worker_priority), 0, 99, "",
-              kRestart,
-              "SCHED_FIFO priority of the odometry thread, the receiver one above, the publisher one "
-              "below; 0: the normal policy. Below 50 stays below the kernel's interrupt threads."),
+      integer(
+          "realtime.worker_priority", LILO_MEMBER(realtime.worker_priority), 0, 99, "", kRestart,
+          "SCHED_FIFO priority of the odometry thread, the receiver one above, the publisher one "
+          "below; 0: the normal policy. Below 50 stays below the kernel's interrupt threads."),
       boolean("realtime.lock_memory", LILO_MEMBER(realtime.lock_memory), kRestart,
               "Locks all memory (mlockall), so that no page fault delays a pose."),
       integer("realtime.reserve_mb", LILO_MEMBER(realtime.reserve_mb), 0, 4096, "", kRestart,

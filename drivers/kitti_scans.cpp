@@ -1,6 +1,7 @@
 #include "drivers/kitti_scans.hpp"
 
 #include "drivers/kitti_rings.hpp"
+#include "drivers/kitti_times.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kScanPeriodNs = 100'000'000;
-constexpr double kNsPerSecond = 1e9;
 
 struct Entry {
   fs::path file;
@@ -40,22 +40,40 @@ std::vector<Entry> list_scans(const fs::path& folder) {
   return entries;
 }
 
-// One number of seconds a line.
-std::vector<std::int64_t> read_times(const fs::path& file) {
-  std::vector<std::int64_t> times_ns;
-  std::ifstream in(file);
-  std::string line;
-  while (std::getline(in, line)) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    double seconds = 0.0;
-    const char* begin = line.data() + line.find_first_not_of(" \t");
-    const auto [end, error] = std::from_chars(begin, line.data() + line.size(), seconds);
-    if (error != std::errc{} || !(std::abs(seconds) < 1e10))
-      throw DriverError(file.string() + ":" + std::to_string(times_ns.size() + 1) +
-                        ": expected a time in seconds, found \"" + line + "\"");
-    times_ns.push_back(std::llround(seconds * kNsPerSecond));
+// Where the scans of the folder a user names are, and the file with their times.
+struct Layout {
+  fs::path scans, times;
+};
+
+Layout layout_of(const fs::path& folder) {
+  if (fs::is_directory(folder / "velodyne")) return {folder / "velodyne", folder / "times.txt"};
+  const fs::path raw = folder / "velodyne_points";
+  if (fs::is_directory(raw / "data")) return {raw / "data", raw / "timestamps.txt"};
+  fs::path times;
+  for (const fs::path& file :
+       {folder / "times.txt", folder / ".." / "times.txt", folder / ".." / "timestamps.txt"}) {
+    if (times.empty() && fs::is_regular_file(file)) times = file;
   }
-  return times_ns;
+  return {folder, times};
+}
+
+// Turns every ray up by `angle_rad` in its own vertical plane. IMLS-SLAM, CT-ICP and KISS-ICP do
+// the same as a rotation about p x z.
+void raise_rays(std::vector<Return>& returns, BeamTable& beams, double angle_rad) {
+  if (angle_rad == 0.0) return;
+  const float c = static_cast<float>(std::cos(angle_rad));
+  const float s = static_cast<float>(std::sin(angle_rad));
+  for (Return& r : returns) {
+    const float across_m = std::hypot(r.x_m, r.y_m);
+    if (across_m == 0.0F) continue;  // straight up: its azimuth is unknown
+    const float factor = c - s * r.z_m / across_m;
+    r.z_m = c * r.z_m + s * across_m;
+    r.x_m *= factor;
+    r.y_m *= factor;
+  }
+  for (int ring = 0; ring < beams.ring_count; ++ring) {
+    beams.elevation_rad[static_cast<std::size_t>(ring)] += static_cast<float>(angle_rad);
+  }
 }
 
 Return to_return(const std::array<float, 4>& point) {
@@ -76,15 +94,11 @@ Return to_return(const std::array<float, 4>& point) {
 class KittiScans final : public ScanSource {
  public:
   KittiScans(const fs::path& folder, const SensorConfig& config) : config_(config) {
-    const bool is_sequence = fs::is_directory(folder / "velodyne");
-    scans_ = list_scans(is_sequence ? folder / "velodyne" : folder);
+    const Layout layout = layout_of(folder);
+    scans_ = list_scans(layout.scans);
     if (scans_.empty())
       throw DriverError(folder.string() + ": expected scans named NNNNNN.bin, found none");
-    for (const fs::path& file : {folder / "times.txt", folder.parent_path() / "times.txt"}) {
-      if (!fs::is_regular_file(file)) continue;
-      times_ns_ = read_times(file);
-      break;
-    }
+    times_ns_ = read_kitti_times(layout.times);
   }
 
   bool next(Scan& scan) override {
@@ -101,6 +115,7 @@ class KittiScans final : public ScanSource {
     scan.complete = read_points(entry.file, scan.returns);
     scan.coverage_rad = scan.complete ? 2.0F * std::numbers::pi_v<float> : 0.0F;
     recover_kitti_rings(scan.returns, scan.beams);
+    raise_rays(scan.returns, scan.beams, config_.kitti_elevation_offset_rad);
     keep_in_range(scan.returns);
     ++(scan.complete ? counts_.scans_complete : counts_.scans_partial);
     return true;

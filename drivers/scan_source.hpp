@@ -40,8 +40,9 @@ class ScanSource {
   [[nodiscard]] virtual std::string error() const { return {}; }
 };
 
-/// `path`: a pcap ("-" for standard input), a folder of NNNNNN.bin scans, or a KITTI sequences/NN
-/// folder (velodyne/, times.txt). Throws DriverError with one line for the user.
+/// `path`: a pcap ("-" for standard input), a folder of NNNNNN.bin scans, a KITTI sequences/NN
+/// folder (velodyne/, times.txt) or a KITTI raw drive (velodyne_points/). Throws DriverError with
+/// one line for the user.
 std::unique_ptr<ScanSource> open_scans(const std::string& path, const SensorConfig& config);
 
 }  // namespace lilo

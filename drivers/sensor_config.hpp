@@ -22,6 +22,9 @@ struct SensorConfig {
   double min_range_m = 0.4;  ///< nearer returns are the robot itself or dust on the lens
   double max_range_m = 130.0;
   ReturnChoice returns = ReturnChoice::both;
+  /// KITTI folders only: added to the elevation of every return. The data set's own calibration is
+  /// said to be 0.205 deg low (Deschaud, IMLS-SLAM, ICRA 2018, section IV).
+  double kitti_elevation_offset_rad = 0.0;
   /// Only what comes in here is a position packet, and nothing else of what does; 0: none is.
   /// Follows udp.position_port.
   std::uint16_t position_port = 8308;

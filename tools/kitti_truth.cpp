@@ -1,5 +1,6 @@
 #include "tools/kitti_truth.hpp"
 
+#include "drivers/kitti_times.hpp"
 #include "tools/text_file.hpp"
 
 #include <fmt/format.h>
@@ -65,17 +66,11 @@ std::int64_t first_scan(const fs::path& folder) {
   return first.value_or(0);
 }
 
-void set_times(Trajectory& truth, const fs::path& times_file, std::int64_t first) {
-  std::vector<double> times_s;
-  if (fs::is_regular_file(times_file)) {
-    std::ifstream in = open_text(times_file.string());
-    for (double t; in >> t;) times_s.push_back(t);
-  }
+void set_times(Trajectory& truth, const std::vector<std::int64_t>& times_ns, std::int64_t first) {
   truth.has_times = true;
   for (std::size_t k = 0; k < truth.poses.size(); ++k) {
-    truth.poses[k].stamp_ns = k < times_s.size()
-                                  ? std::llround(times_s[k] * 1e9)
-                                  : (static_cast<std::int64_t>(k) - first) * kScanPeriod_ns;
+    truth.poses[k].stamp_ns =
+        k < times_ns.size() ? times_ns[k] : (static_cast<std::int64_t>(k) - first) * kScanPeriod_ns;
   }
 }
 
@@ -132,7 +127,7 @@ Trajectory kitti_sequence_truth(const std::string& folder) {
   const Pose Tr = kitti_calibration((root / "calib.txt").string(), "Tr");
   Trajectory truth = read_trajectory(file.string());
   for (StampedPose& pose : truth.poses) pose.pose = Tr.inverse() * pose.pose * Tr;
-  set_times(truth, root / "times.txt", first_scan(root / "velodyne"));
+  set_times(truth, read_kitti_times(root / "times.txt"), first_scan(root / "velodyne"));
   return truth;
 }
 
@@ -153,7 +148,12 @@ Trajectory kitti_raw_truth(const std::string& folder) {
   for (const std::string& file : files) {
     truth.poses.push_back({0, T_start_world * imu_pose(file, scale) * T_imu_sensor});
   }
-  set_times(truth, {}, first_scan(root / "velodyne_points" / "data"));
+  // Without the scans' own times both are counted in steps.
+  std::vector<std::int64_t> times_ns;
+  if (fs::is_regular_file(root / "velodyne_points" / "timestamps.txt")) {
+    times_ns = read_kitti_times(root / "oxts" / "timestamps.txt");
+  }
+  set_times(truth, times_ns, first_scan(root / "velodyne_points" / "data"));
   return truth;
 }
 

@@ -19,7 +19,8 @@ Trajectory kitti_sequence_truth(const std::string& folder);
 /// calib_imu_to_velo.txt in its folder or the one above. The position of the GPS/IMU unit is taken
 /// by the Mercator projection of the raw data's devkit: with s = cos(first latitude) and R =
 /// 6378137 m, x = s R lon, y = s R log(tan(pi/4 + lat/2)), z = altitude; rotation Rz(yaw) Ry(pitch)
-/// Rx(roll).
+/// Rx(roll) (devkit: convertOxtsToPose.m, latlonToMercator.m). Times are those of
+/// oxts/timestamps.txt, which differ from the scans' by some milliseconds.
 Trajectory kitti_raw_truth(const std::string& folder);
 
 /// T of a calibration file: the line `key: 12 numbers`, or in raw drives `R: 9` and `T: 3 numbers`.

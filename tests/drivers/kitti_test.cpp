@@ -140,6 +140,54 @@ TEST(KittiScans, ABareFolderGivesStepsOfATenthOfASecond) {
   EXPECT_EQ(indices, (std::vector<std::uint64_t>{0, 1, 3}));
 }
 
+void write_points(const std::string& file, const std::vector<float>& numbers) {
+  std::ofstream out(file, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(numbers.data()),
+            static_cast<std::streamsize>(numbers.size() * sizeof(float)));
+}
+
+/// 2011-09-26 13:02:25 UTC is 1317042145 s, says `date -u -d ... +%s`.
+TEST(KittiScans, ARawDriveHasDatesForTimes) {
+  const std::string drive = fresh_folder("2011_09_26_drive_0001_sync");
+  fs::create_directories(drive + "/velodyne_points/data");
+  for (const char* name : {"0000000000.bin", "0000000001.bin"})
+    write_points(drive + "/velodyne_points/data/" + name, {5, 0, 0, 0.5F});
+  std::ofstream(drive + "/velodyne_points/timestamps.txt")
+      << "2011-09-26 13:02:25.594360375\n2011-09-26 13:02:26.000000001\n";
+  for (const std::string& path : {drive, drive + "/velodyne_points/data"}) {
+    auto source = open_scans(path, {});
+    Scan scan;
+    ASSERT_TRUE(source->next(scan));
+    EXPECT_EQ(scan.end_ns, 1'317'042'145'594'360'375);
+    EXPECT_TRUE(scan.motion_compensated);
+    ASSERT_TRUE(source->next(scan));
+    EXPECT_EQ(scan.end_ns, 1'317'042'146'000'000'001);
+  }
+  std::ofstream(drive + "/velodyne_points/timestamps.txt") << "2011-13-26 13:02:25.5\n";
+  EXPECT_NE(refusal(drive).find("timestamps.txt:1: expected a time"), std::string::npos);
+}
+
+TEST(KittiScans, TheElevationOffsetRaisesEveryRayAndKeepsRangeAndAzimuth) {
+  const std::string folder = fresh_folder("raised");
+  write_points(folder + "/000000.bin", {10, 0, 0, 0, -3, 4, -2, 0, 1, -1, 30, 0, 0, 0, 7, 0});
+  auto plain = open_scans(folder, {});
+  auto raised = open_scans(folder, {.kitti_elevation_offset_rad = 0.205 * kDeg});
+  Scan before, after;
+  ASSERT_TRUE(plain->next(before));
+  ASSERT_TRUE(raised->next(after));
+  ASSERT_EQ(after.returns.size(), 4U);
+  const auto elevation = [](const Return& r) {
+    return std::atan2(static_cast<double>(r.z_m), static_cast<double>(std::hypot(r.x_m, r.y_m)));
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Return &a = before.returns[k], &b = after.returns[k];
+    EXPECT_NEAR(elevation(b) - elevation(a), 0.205 * kDeg, 1e-6);
+    EXPECT_NEAR(std::hypot(a.x_m, a.y_m, a.z_m), std::hypot(b.x_m, b.y_m, b.z_m), 1e-5F);
+    EXPECT_NEAR(std::atan2(a.y_m, a.x_m), std::atan2(b.y_m, b.x_m), 1e-6F);
+  }
+  EXPECT_EQ(after.returns[3].z_m, 7.0F);  // straight up has no vertical plane of its own
+}
+
 TEST(KittiScans, BadInputIsOneClearLine) {
   const std::string folder = fresh_folder("nothing");
   EXPECT_EQ(refusal(folder), folder + ": expected scans named NNNNNN.bin, found none");
@@ -147,7 +195,10 @@ TEST(KittiScans, BadInputIsOneClearLine) {
   EXPECT_NE(refusal(folder).find("found none"), std::string::npos);
   std::ofstream(folder + "/velodyne/000000.bin") << "0123456789abcdef0";
   std::ofstream(folder + "/times.txt") << "0.0\nsoon\n";
-  EXPECT_EQ(refusal(folder), folder + "/times.txt:2: expected a time in seconds, found \"soon\"");
+  EXPECT_EQ(refusal(folder),
+            folder +
+                "/times.txt:2: expected a time in seconds, or date and time, found "
+                "\"soon\"");
   fs::remove(folder + "/times.txt");
   auto source = open_scans(folder, {});
   Scan scan;

@@ -76,6 +76,13 @@ TEST(KittiTruth, RawDrivesGoByTheirGps) {
   EXPECT_NEAR(moved.y(), 0.0, 1e-3);
   EXPECT_NEAR(moved.z(), 2.0, 1e-9);
   EXPECT_EQ(truth.poses[1].stamp_ns, 100'000'000);
+  // With times in both, each keeps its own: the GPS unit's are not the scans'.
+  folder.write(drive + "velodyne_points/timestamps.txt", "2011-09-26 13:02:25.95\n");
+  folder.write(drive + "oxts/timestamps.txt",
+               "2011-09-26 13:02:25.900000000\n2011-09-26 13:02:26.001000000\n");
+  const Trajectory timed = kitti_raw_truth(folder.path() + "/" + drive);
+  EXPECT_EQ(timed.poses[0].stamp_ns, 1'317'042'145'900'000'000);
+  EXPECT_EQ(timed.poses[1].stamp_ns, 1'317'042'146'001'000'000);
 }
 
 TEST(BenchmarkSets, AreFoundInFoldersOfFolders) {

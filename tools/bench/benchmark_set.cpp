@@ -35,7 +35,6 @@ std::optional<BenchmarkSet> set_of(const fs::path& folder) {
     return set;
   }
   if (fs::is_directory(folder / "velodyne_points" / "data")) {
-    set.input = (folder / "velodyne_points" / "data").string();
     if (fs::is_directory(folder / "oxts" / "data")) set.truth = kitti_raw_truth(folder.string());
     return set;
   }
