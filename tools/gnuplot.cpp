@@ -69,6 +69,8 @@ set datafile separator comma
 set datafile missing ""
 set border 3 linecolor rgb "#404040"
 set tics nomirror out
+set format '%g'
+set autoscale xfixmax
 set grid ytics back linetype 1 linecolor rgb "#e0e0e0" linewidth 1
 set key top left outside horizontal samplen 2 noenhanced
 )",

@@ -73,8 +73,7 @@ std::vector<Trajectory> read_estimates(const std::vector<std::string>& files) {
 }
 
 void plot_errors(const PlotOptions& options) {
-  const std::string title =
-      options.title.empty() ? base_name(options.trajectories[0]) : options.title;
+  const std::string title = options.title.empty() ? "Errors over distance" : options.title;
   draw_errors(read_estimates(options.trajectories), read_truth(options.truth), title, options.out);
 }
 
