@@ -7,34 +7,44 @@
 #include <dlfcn.h>
 #include <pthread.h>
 
-/// For LD_PRELOAD: counts the allocations of lilod's worker, per ten seconds since its first, and
-/// prints them at the end of the program.
+/// For LD_PRELOAD: counts the allocations of every thread by its name, from COUNT_FROM_S to
+/// COUNT_TO_S seconds after the start, and prints them at the end of the program.
 namespace {
 
-constexpr std::size_t kIntervals = 360;  // an hour
-std::array<std::atomic<long>, kIntervals> counts{};
-std::atomic<std::size_t> last_interval{0};
-std::atomic<time_t> began{0};
-
-bool in_worker() {
-  thread_local int known = -1;  // threads get their name a moment after their start
-  if (known == 1) return true;
+struct Thread {
   std::array<char, 16> name{};
-  pthread_getname_np(pthread_self(), name.data(), name.size());
-  known = std::strcmp(name.data(), "lilo-worker") == 0 ? 1 : 0;
-  return known == 1;
-}
+  std::atomic<long> allocations{0};
+};
 
-void count() {
-  if (!in_worker()) return;
+constexpr std::size_t kThreads = 32;
+std::array<Thread, kThreads> threads;
+std::atomic<std::size_t> thread_count{0};
+
+double now_s() {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  time_t none = 0;
-  began.compare_exchange_strong(none, now.tv_sec);
-  const auto interval = static_cast<std::size_t>(now.tv_sec - began) / 10;
-  if (interval >= kIntervals) return;
-  ++counts[interval];
-  last_interval = interval;
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double seconds_of(const char* name) {
+  const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before main()
+  return value == nullptr ? 0.0 : std::atof(value);
+}
+
+const double began_s = now_s();
+const double from_s = seconds_of("COUNT_FROM_S"), to_s = seconds_of("COUNT_TO_S");
+
+void count() {
+  const double age_s = now_s() - began_s;
+  if (began_s == 0.0 || age_s < from_s || age_s >= to_s) return;
+  thread_local Thread* mine = nullptr;  // named long before we look
+  if (mine == nullptr) {
+    const std::size_t k = thread_count++;
+    if (k >= kThreads) return;
+    mine = &threads[k];
+    pthread_getname_np(pthread_self(), mine->name.data(), mine->name.size());
+  }
+  ++mine->allocations;
 }
 
 template <typename Function>
@@ -44,9 +54,11 @@ Function next(const char* name) {
 
 struct Printer {
   ~Printer() {
-    std::fprintf(stderr, "allocations of the worker per 10 s since its first:");
-    for (std::size_t k = 0; k <= last_interval; ++k) std::fprintf(stderr, " %ld", counts[k].load());
-    std::fprintf(stderr, "\n");
+    for (const Thread& thread : threads) {
+      if (thread.allocations > 0)
+        std::fprintf(stderr, "allocations of %s: %ld\n", thread.name.data(),
+                     thread.allocations.load());
+    }
   }
 } printer;
 

@@ -1,0 +1,71 @@
+// After the first seconds scans become poses without touching the heap.
+#include "core/odometry.hpp"
+#include "drivers/scan_source.hpp"
+#include "tests/drivers/data_dir.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <new>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace {
+std::uint64_t allocations = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;  // NOLINT(cppcoreguidelines-no-malloc)
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }               // NOLINT
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }  // NOLINT
+
+namespace lilo {
+namespace {
+
+struct Drive {
+  const char* folder;
+  bool calibration_file;
+};
+std::ostream& operator<<(std::ostream& out, const Drive& drive) { return out << drive.folder; }
+
+class OdometryAllocation : public testing::TestWithParam<Drive> {};
+
+// The whole drive, so also where the map is cropped. Eigen's own allocations (std::malloc) are
+// not counted here; tests/daemon/hog counts every malloc of the worker.
+TEST_P(OdometryAllocation, NoneOnceWarm) {
+  constexpr std::uint64_t kWarmScans = 20;
+  const std::string folder = test::data_path(GetParam().folder);
+  LILO_NEED_DATA(GetParam().folder);
+  SensorConfig sensor;
+  if (GetParam().calibration_file) {
+    sensor.model = SensorModel::hdl64e;
+    sensor.calibration_file = folder + "/calibration.yaml";
+  }
+  const auto scans = open_scans(folder + "/data.pcap", sensor);
+  Odometry odometry{OdometryConfig{}};
+  Scan scan;
+  std::vector<std::uint64_t> guilty;
+  std::uint64_t count = 0;
+  while (scans->next(scan)) {
+    const std::uint64_t before = allocations;
+    odometry.process(scan);
+    if (++count > kWarmScans && allocations != before) guilty.push_back(count - 1);
+  }
+  EXPECT_GT(count, 100U);
+  EXPECT_EQ(guilty, std::vector<std::uint64_t>{}) << "scans that took memory";
+}
+
+INSTANTIATE_TEST_SUITE_P(Simulated, OdometryAllocation,
+                         testing::Values(Drive{"sim_vlp16_park", false},
+                                         Drive{"sim_vlp16_town", false},
+                                         Drive{"sim_hdl64_town", true}),
+                         [](const auto& test) { return std::string(test.param.folder); });
+
+}  // namespace
+}  // namespace lilo
