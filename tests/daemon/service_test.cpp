@@ -1,6 +1,8 @@
 #include "tests/daemon/conversation.hpp"
 
+#include <cmath>
 #include <csignal>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -8,6 +10,7 @@
 #include <sstream>
 #include <sys/ptrace.h>
 #include <sys/wait.h>
+#include <unistd.h>
 #include <vector>
 
 /// The daemon through what befalls it, seen from outside.
@@ -135,24 +138,68 @@ TEST(Sensor, UnpluggedAndReplugged) {
   EXPECT_GT(after["seq"], before["seq"]);
 }
 
-// kill -9 and a new start: a client sees a new session.
-TEST(Session, ANewStartIsANewSession) {
-  std::string sessions[2];
-  for (std::string& session : sessions) {
-    Lilod lilod;
-    ASSERT_TRUE(lilod.wait_ready());
-    UdpSocket client;
-    session = ask(client, lilod, R"({"query":"hello"})", "hello")["session"];
-    lilod.process().signal(SIGKILL);
-    EXPECT_EQ(lilod.process().wait(seconds(2)), 128 + SIGKILL);
+// Somebody sets the computer's clock an hour ahead while the sensor turns: the session goes on, and
+// no pose jumps, no latency is an hour.
+TEST(Clock, AStepOfAnHourBendsNothing) {
+  if (LILO_SANITIZED) GTEST_SKIP() << "a sanitizer has to be loaded first";
+  const std::string step_file = testing::TempDir() + "lilo_step_" + std::to_string(getpid());
+  std::filesystem::remove(step_file);
+  Lilod lilod("",
+              {{"LD_PRELOAD", LILO_TESTS_DIR "/libstep_clock.so"}, {"STEP_CLOCK_FILE", step_file}});
+  ASSERT_TRUE(lilod.wait_ready());
+  Sensor sensor;
+  sensor.turn(lilod, 5.0);
+  std::ofstream(step_file) << "now";
+  sensor.turn(lilod, 10.0);
+  const double half_an_hour_on = static_cast<double>(std::time(nullptr)) + 1800.0;
+  std::vector<json> poses;
+  json health;
+  const auto deadline = std::chrono::steady_clock::now() + seconds(10);
+  while (health.is_null() && std::chrono::steady_clock::now() < deadline) {
+    const auto datagram = lilod.sink().receive(milliseconds(300));
+    if (!datagram) continue;
+    const json message = json::parse(*datagram);
+    if (message.contains("pose")) poses.push_back(message);
+    if (message["timestamp"] > half_an_hour_on && message.contains("health")) health = message;
   }
-  EXPECT_NE(sessions[0], sessions[1]);
+  std::filesystem::remove(step_file);
+  ASSERT_FALSE(health.is_null()) << "the new time is in force";
+  ASSERT_GT(poses.size(), 10U);
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    EXPECT_EQ(poses[k]["session"], poses[0]["session"]);
+    EXPECT_EQ(poses[k]["seq"], k) << "none is missing";
+    EXPECT_GT(poses[k]["timestamp"], poses[k - 1]["timestamp"]);
+    const json& pose = poses[k]["pose"];
+    EXPECT_NE(pose["status"], "lost");
+    EXPECT_LT(std::abs(pose["position"]["x"].get<double>()), 0.1) << "it stands";
+    EXPECT_LT(pose["latency_ms"], 1000.0);
+  }
+  EXPECT_LT(health["health"]["uptime_s"], 60.0);
+  EXPECT_LT(health["health"]["sensor_silent_s"], 60.0);
+}
+
+// kill -9 and a new start: within two seconds a client sees a new session.
+TEST(Session, KilledAndStartedAgainItIsANewOneWithinTwoSeconds) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  UdpSocket client;
+  const json before = ask(client, lilod, R"({"query":"hello"})", "hello")["session"];
+  const auto killed_at = std::chrono::steady_clock::now();
+  lilod.process().signal(SIGKILL);
+  EXPECT_EQ(lilod.process().wait(seconds(2)), 128 + SIGKILL);
+  lilod.restart();
+  ASSERT_TRUE(lilod.wait_ready());
+  const json after = ask(client, lilod, R"({"query":"hello"})", "hello")["session"];
+  EXPECT_LT(std::chrono::steady_clock::now() - killed_at, seconds(2));
+  EXPECT_TRUE(after.is_string());
+  EXPECT_NE(before, after);
 }
 
 // Garbage, oversized requests and ten thousand subscriptions: bounded answers, and poses go on.
 TEST(Hostile, ClientsCannotDisturbThePoses) {
   Lilod lilod("  max_clients: 4\n");
   ASSERT_TRUE(lilod.wait_ready());
+  const json calm = next_of_kind(lilod.sink(), "health").value_or(json());
   UdpSocket attacker;
   const std::string huge = R"({"subscribe":{},"x":")" + std::string(60000, 'x') + "\"}";
   std::mt19937 rng(3);
@@ -172,6 +219,10 @@ TEST(Hostile, ClientsCannotDisturbThePoses) {
   const json health = next_of_kind(lilod.sink(), "health").value_or(json());
   EXPECT_LE(health["health"]["clients"], 4);
   EXPECT_EQ(health["health"]["packets"]["lost"], 0);
+  const auto resident_mb = [](const json& h) {
+    return h["health"]["realtime"]["resident_mb"].get<double>();
+  };
+  EXPECT_LT(resident_mb(health), resident_mb(calm) + 16.0) << "a map has begun, nothing else grew";
   int answers = 0;
   while (attacker.receive(milliseconds(0))) ++answers;
   EXPECT_LT(answers, 1000) << "20 000 requests in a moment";
