@@ -22,7 +22,7 @@ def free_port():
 class Lilod:
     """The daemon, with us as its sink; every datagram is kept."""
 
-    def __init__(self, root, folder, sensor):
+    def __init__(self, root, folder, sensor, preset="release"):
         self.sink = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.sink.bind(("127.0.0.1", 0))
         self.sink.settimeout(0.2)
@@ -36,7 +36,7 @@ class Lilod:
             f"subscribe: {{port: {self.query_port}}}\n")
         self.log = folder / "log"
         with open(self.log, "w") as log:
-            self.process = subprocess.Popen([root / "build/release/bin/lilod", "--config", path],
+            self.process = subprocess.Popen([root / "build" / preset / "bin/lilod", "--config", path],
                                             stderr=log)
         self.poses, self.health, self.done = [], None, False
         self.thread = threading.Thread(target=self.listen)

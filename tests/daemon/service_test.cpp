@@ -155,8 +155,9 @@ TEST(Clock, AStepOfAnHourBendsNothing) {
   std::vector<json> poses;
   json health;
   const auto deadline = std::chrono::steady_clock::now() + seconds(10);
-  while (health.is_null() && std::chrono::steady_clock::now() < deadline) {
+  while (std::chrono::steady_clock::now() < deadline) {
     const auto datagram = lilod.sink().receive(milliseconds(300));
+    if (!datagram && !health.is_null()) break;  // all that was said has been read
     if (!datagram) continue;
     const json message = json::parse(*datagram);
     if (message.contains("pose")) poses.push_back(message);
