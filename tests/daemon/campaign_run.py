@@ -172,14 +172,23 @@ def times_by_status(poses):
     return out, recovery
 
 
+def silent_packets(meta, options):
+    """Of those that meta.json counts as lost: never sent, because the sensor had no power."""
+    if "--restart-at-s" not in options:
+        return 0
+    gap_s = float(options[options.index("--restart-gap-s") + 1]) if "--restart-gap-s" in options else 1.5
+    return round(gap_s * meta["packets_sent"] / meta["duration_s"])
+
+
 def accounts(meta, health):
     """What does not add up. Losses at the very ends of a recording nobody can see."""
     bad, packets, scans = [], health["packets"], health["scans"]
     arrived = meta["packets_sent"] - meta["packets_lost"] + meta["duplicates"] + meta["garbage"]
     if packets["received"] + packets["malformed"] + packets["kernel_dropped"] != arrived:
         bad.append(f"{arrived} packets came, {packets['received'] + packets['malformed']} accounted for")
-    if abs(packets["lost"] - meta["packets_lost"]) > meta.get("edge", 2):
-        bad.append(f"{meta['packets_lost']} packets lost, {packets['lost']} counted")
+    lost = meta["packets_lost"] - meta["silent"]
+    if abs(packets["lost"] - lost) > 2:
+        bad.append(f"{lost} packets lost, {packets['lost']} counted")
     if scans["complete"] + scans["partial"] != scans["processed"] + scans["dropped"]:
         bad.append("scans do not add up")
     if scans["processed"] != health["poses_sent"] + health["poses_not_sent"]:
@@ -242,6 +251,7 @@ def run(root, options, speed):
         if made.returncode != 0:
             return {"options": options, "bad": ["lilo sim: " + made.stderr.strip()]}
         meta = json.loads((folder / "meta.json").read_text())
+        meta["silent"] = silent_packets(meta, options)
         if not meta["gps"]:
             speed = 1.0  # such stamps follow the computer's clock
         result = play(root, folder, meta, speed)
