@@ -73,7 +73,7 @@ void write_weak_direction(JsonWriter& out, const WeakDirection& weak) {
 
 void write_weak_directions(JsonWriter& out, const Estimate& estimate) {
   const auto& all = estimate.weak_directions;
-  const auto end = all.begin() + std::clamp(estimate.weak_count, 0, kMaxWeakDirections);
+  const auto* const end = all.begin() + std::clamp(estimate.weak_count, 0, kMaxWeakDirections);
   const bool finite = std::all_of(all.begin(), end, [](const WeakDirection& weak) {
     return weak.direction.allFinite() && std::isfinite(weak.from_scan);
   });

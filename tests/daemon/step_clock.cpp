@@ -31,6 +31,7 @@ void step(msghdr& message) {
 
 extern "C" {
 
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name)
 int clock_gettime(clockid_t clock, timespec* tp) noexcept {
   static const auto real = next<int (*)(clockid_t, timespec*)>("clock_gettime");
   const int result = real(clock, tp);
@@ -38,6 +39,7 @@ int clock_gettime(clockid_t clock, timespec* tp) noexcept {
   return result;
 }
 
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name)
 int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, timespec* timeout) {
   static const auto real = next<int (*)(int, mmsghdr*, unsigned, int, timespec*)>("recvmmsg");
   const int received = real(fd, messages, count, flags, timeout);
