@@ -33,12 +33,25 @@ bool Selection::take(std::uint64_t voxel) {
 }
 
 const std::vector<Feature>& Selection::choose(const std::vector<Feature>& all) {
+  // Too small a voxel fills the goal before the turn is over, as after a scan that saw little.
+  constexpr int kMostPasses = 8;
+  for (int pass = 0; pass < kMostPasses && !take_evenly(all); ++pass) {
+  }
+  return chosen_;
+}
+
+bool Selection::take_evenly(const std::vector<Feature>& all) {
   std::fill(taken_.begin(), taken_.end(), 0);
   chosen_.clear();
   std::array<int, kKinds> count{};
+  bool complete = true;
   for (const Feature& f : all) {
     const auto kind = static_cast<std::size_t>(f.kind);
-    if (count[kind] >= 2 * goal_[kind] || !take(voxel_of(f))) continue;
+    if (count[kind] >= 2 * goal_[kind]) {
+      complete = false;
+      continue;
+    }
+    if (!take(voxel_of(f))) continue;
     ++count[kind];
     chosen_.push_back(f);
   }
@@ -47,7 +60,7 @@ const std::vector<Feature>& Selection::choose(const std::vector<Feature>& all) {
     const float ratio = static_cast<float>(std::max(count[k], 1)) / static_cast<float>(goal_[k]);
     voxel_m_[k] = std::clamp(voxel_m_[k] * std::pow(ratio, 0.35F), 0.05F, 5.0F);
   }
-  return chosen_;
+  return complete;
 }
 
 }  // namespace lilo::standard

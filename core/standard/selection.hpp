@@ -21,6 +21,8 @@ class Selection {
  private:
   static constexpr int kKinds = 2;
   [[nodiscard]] std::uint64_t voxel_of(const Feature& f) const;
+  /// False when a goal was reached twice over before the end. Adapts the voxels in any case.
+  bool take_evenly(const std::vector<Feature>& all);
   bool take(std::uint64_t voxel);
 
   std::array<int, kKinds> goal_;

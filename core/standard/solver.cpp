@@ -20,7 +20,7 @@ KnotInformation transition(double dt_s) {
 void add_prior(const Prior& prior, const SolverConfig& config, const Unknowns& x, Matrix& H,
                Unknowns& b) {
   H.topLeftCorner<kKnotSize, kKnotSize>() += prior.begin_information;
-  b.head<kKnotSize>() -= prior.begin_information * x.head<kKnotSize>();
+  b.head<kKnotSize>() -= prior.begin_information * (x.head<kKnotSize>() - prior.begin_mean);
   const double dt_s = prior.span_s / config.segments;
   const KnotInformation phi = transition(dt_s);
   const KnotInformation W = process_information(config.acceleration_density, dt_s);
@@ -98,7 +98,7 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   }
   const float ground_c2 = config_.ground_kernel * config_.ground_kernel;
   const float structure_c2 = config_.structure_kernel * config_.structure_kernel;
-  double weights = 0.0, squares = 0.0;
+  double weights = 0.0, squares = 0.0, structure = 0.0;
   solution.matched = 0;
   const float data_weight = config_.data_weight * static_cast<float>(stride);
   for (std::size_t k = 0; k < features.size(); k += stride) {
@@ -122,6 +122,7 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
     const float w = robust * data_weight;
     ++solution.matched;
     weights += static_cast<double>(robust);
+    if (!ground) structure += static_cast<double>(robust);
     squares += static_cast<double>(robust * square);
     // J = [-[turned]x  I]: J'OJ and J'Or in blocks.
     Eigen::Matrix3f cross;
@@ -135,6 +136,7 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
     bin.b.tail<3>() -= (w * Or).cast<double>();
   }
   solution.inliers = weights;
+  solution.structure_inliers = structure;
   solution.mean_square = weights > 0.0 ? squares / weights : 0.0;
 }
 

@@ -28,7 +28,9 @@ struct Prior {
   Pose T_begin;
   Twist twist;
   double span_s = 0.1;
-  KnotInformation begin_information = KnotInformation::Identity();  ///< of the first knot
+  Eigen::Matrix<double, kKnotSize, 1> begin_mean =
+      Eigen::Matrix<double, kKnotSize, 1>::Zero();  ///< of the first knot
+  KnotInformation begin_information = KnotInformation::Identity();
 };
 
 struct SolverConfig {
@@ -45,9 +47,10 @@ struct Solution {
   Trajectory trajectory;
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
   Matrix6d data_information = Matrix6d::Zero();               ///< of the pose, from data alone
-  int matched = 0;           ///< features that found a distribution
-  double inliers = 0;        ///< sum of robust weights
-  double mean_square = 0.0;  ///< weighted mean of squared residuals in sigmas
+  int matched = 0;               ///< features that found a distribution
+  double inliers = 0;            ///< sum of robust weights
+  double structure_inliers = 0;  ///< of them what is not ground
+  double mean_square = 0.0;      ///< weighted mean of squared residuals in sigmas
   int iterations = 0;
   bool converged = false;
 };

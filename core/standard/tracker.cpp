@@ -34,17 +34,6 @@ SolverConfig solver_config(const StandardConfig& c) {
   return s;
 }
 
-/// At the start the pose is the origin by definition; of the motion only what vehicles do is known:
-/// they go fast along the ground and turn about the upright, and do little else.
-KnotInformation first_information() {
-  constexpr double kPose = 1e-4;  // m, rad
-  constexpr double kSpeed_mps = 20.0, kClimb_mps = 0.5, kYaw_radps = 0.5, kTilt_radps = 0.1;
-  Eigen::Matrix<double, kKnotSize, 1> sigma;
-  sigma << Vector6d::Constant(kPose), kTilt_radps, kTilt_radps, kYaw_radps, kSpeed_mps, kSpeed_mps,
-      kClimb_mps;
-  return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
-}
-
 }  // namespace
 
 Tracker::Tracker(const OdometryConfig& config)
@@ -61,12 +50,13 @@ Estimate Tracker::process(const Scan& scan, StageHook hook) {
   hook(Stage::project);
   const std::vector<Feature>& chosen = selection_.choose(features);
   hook(Stage::filter);
-  const Prior prior = predict(scan);
-  const Solution solution =
-      scan_count_ == 1 ? start(chosen, prior) : solver_.solve(chosen, maps_, prior);
+  const Timing timing{scan.start_ns, scan.end_ns, scan.motion_compensated};
+  remember(timing, features, chosen);
+  const Prior prior = predict(timing);
+  const Solution solution = scan_count_ == 1 ? start() : solver_.solve(chosen, maps_, prior);
   status_ = status_of(scan, solution, chosen.size());
   hook(Stage::align);
-  accept(scan, prior, solution);
+  accept(timing, prior, solution);
   grow_map(features, solution.trajectory);
   hook(Stage::update_map);
   ++scan_count_;
@@ -82,14 +72,31 @@ std::vector<Eigen::Vector3f> Tracker::map_points() const {
   return points_m;
 }
 
-Prior Tracker::predict(const Scan& scan) const {
-  constexpr double kUsualSpan_s = 0.1;
-  const double duration_s = seconds(scan.end_ns - scan.start_ns);
+/// At the start the pose is the origin by definition; of the motion only what vehicles do is known:
+/// they go fast along the ground and turn about the upright, and do little else.
+KnotInformation Tracker::first_information() {
+  constexpr double kPose = 1e-4;  // m, rad
+  constexpr double kSpeed_mps = 20.0, kClimb_mps = 0.5, kYaw_radps = 0.5, kTilt_radps = 0.1;
+  Eigen::Matrix<double, kKnotSize, 1> sigma;
+  sigma << Vector6d::Constant(kPose), kTilt_radps, kTilt_radps, kYaw_radps, kSpeed_mps, kSpeed_mps,
+      kClimb_mps;
+  return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+}
+
+/// First to last firing, as far as the scan tells.
+double Tracker::span_of(const Timing& timing) {
+  constexpr double kUsual_s = 0.1;
+  const double span_s = seconds(timing.end_ns - timing.start_ns);
+  return span_s > 0.0 ? span_s : kUsual_s;
+}
+
+Prior Tracker::predict(const Timing& scan) const {
+  const double duration_s = span_of(scan);
   const double since_s = scan_count_ == 0 ? duration_s : seconds(scan.end_ns - last_end_ns_);
   Prior prior;
   // Returns that were compensated all belong to the end: the trajectory reaches back to the last.
   prior.span_s = scan.motion_compensated ? since_s : duration_s;
-  if (prior.span_s <= 0.0) prior.span_s = kUsualSpan_s;
+  if (prior.span_s <= 0.0) prior.span_s = duration_s;
   // Longer, and either the clock was set or the sensor was off: no reason to have moved on.
   constexpr double kLongestGap_s = 5.0;
   const double unseen_s = since_s - prior.span_s;
@@ -98,56 +105,6 @@ Prior Tracker::predict(const Scan& scan) const {
   prior.twist = twist_;
   prior.begin_information = solver_.propagated(information_, gap_s);
   return prior;
-}
-
-/// Aligns the second scan when the sensor moved by about `twist` during both: the first one, which
-/// alone makes the map, is straightened by it.
-Solution Tracker::try_start(const std::vector<Feature>& chosen, Prior prior, const Twist& twist,
-                            double doubt_mps) {
-  Trajectory first;
-  first.twist = twist;
-  first.span_s = first_span_s_;
-  first.T_begin = moved({}, twist, -first_span_s_);
-  first.knots = Unknowns::Zero(Eigen::Index{kKnotSize} * (first.segments + 1));
-  maps_.clear();
-  insert(first_features_, first);
-  prior.twist = twist;
-  prior.begin_information.diagonal().segment<2>(9).setConstant(1.0 / (doubt_mps * doubt_mps));
-  return solver_.solve(chosen, maps_, prior);
-}
-
-/// The second scan tells the motion, and so how the first one was bent. Standing still is tried
-/// first, then speeds all around: the one whose two scans agree best is refined until the motion
-/// found is the motion assumed.
-Solution Tracker::start(const std::vector<Feature>& chosen, const Prior& prior) {
-  constexpr double kClearlyBetter = 1.05;
-  constexpr int kMaxRounds = 15, kHeadings = 8;
-  constexpr double kSpeedEnough_mps = 0.02;
-  // An open field hardly says how fast one goes; a robot that is switched on mostly stands.
-  constexpr double kStanding_mps = 0.5, kMoving_mps = 3.0;
-  double doubt_mps = kStanding_mps;
-  Solution best = try_start(chosen, prior, {}, doubt_mps);
-  for (const double speed_mps : {6.0, 12.0, 18.0, 24.0, 30.0}) {
-    for (int k = 0; k < kHeadings; ++k) {
-      const double heading_rad = 2.0 * std::numbers::pi * k / kHeadings;
-      Twist twist;
-      twist.linear_mps = {speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad),
-                          0.0};
-      const Solution other = try_start(chosen, prior, twist, kMoving_mps);
-      if (other.inliers > kClearlyBetter * best.inliers) {
-        best = other;
-        doubt_mps = kMoving_mps;
-      }
-    }
-  }
-  for (int round = 0; round < kMaxRounds; ++round) {
-    const Twist twist = twist_between({}, best.trajectory.end(), prior.span_s);
-    const double change_mps = (twist.linear_mps - best.trajectory.twist.linear_mps).norm();
-    best = try_start(chosen, prior, twist, doubt_mps);
-    if (change_mps < kSpeedEnough_mps) break;
-  }
-  first_features_ = {};
-  return best;
 }
 
 TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
@@ -161,15 +118,13 @@ TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
       solution.inliers < kMinWeight * matched) {
     return TrackingStatus::lost;
   }
+  if (starts_.size() > 1) return TrackingStatus::initializing;  // another motion fits as well
   return scan.complete && solution.converged ? TrackingStatus::tracking : TrackingStatus::degraded;
 }
 
-void Tracker::accept(const Scan& scan, const Prior& prior, const Solution& solution) {
+void Tracker::accept(const Timing& scan, const Prior& prior, const Solution& solution) {
   last_end_ns_ = scan.end_ns;
-  if (status_ == TrackingStatus::initializing) {
-    first_span_s_ = prior.span_s;
-    return;
-  }
+  if (scan_count_ == 0) return;
   if (status_ == TrackingStatus::lost) {
     T_odom_sensor_ = moved(prior.T_begin, prior.twist, prior.span_s);
     information_ = solver_.propagated(prior.begin_information, prior.span_s);
@@ -189,7 +144,6 @@ void Tracker::grow_map(const std::vector<Feature>& features, const Trajectory& t
       so3_log(moved_by.rotation).norm() < c.keyframe_rad) {
     return;
   }
-  if (scan_count_ == 0) first_features_ = features;
   insert(features, trajectory);
   T_odom_keyframe_ = T_odom_sensor_;
 }

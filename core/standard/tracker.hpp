@@ -17,13 +17,42 @@ class Tracker {
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
  private:
-  [[nodiscard]] Prior predict(const Scan& scan) const;
-  Solution try_start(const std::vector<Feature>& chosen, Prior prior, const Twist& twist,
-                     double doubt_mps);
-  Solution start(const std::vector<Feature>& chosen, const Prior& prior);
-  void accept(const Scan& scan, const Prior& prior, const Solution& solution);
+  struct Timing {
+    std::int64_t start_ns = 0, end_ns = 0;
+    bool motion_compensated = false;
+  };
+  /// What the first scans leave behind until the motion is known.
+  struct Seen {
+    Timing timing;
+    std::vector<Feature> all, chosen;
+  };
+  /// A motion the sensor may have had when it was switched on.
+  struct Start {
+    Twist twist;  ///< as found so far
+    Eigen::Vector3d believed_mps = Eigen::Vector3d::Zero();
+    double doubt_mps = 0.0;  ///< 1 sigma of it, along the ground
+    double inliers = 0.0;    ///< features it explains
+    double structure = 0.0;  ///< of them what is not ground
+    double misfit = 0.0;     ///< mean square of what it leaves, in sigmas
+  };
+
+  static KnotInformation first_information();
+  static double span_of(const Timing& timing);
+  [[nodiscard]] Prior predict(const Timing& timing) const;
+  void accept(const Timing& timing, const Prior& prior, const Solution& solution);
   void grow_map(const std::vector<Feature>& features, const Trajectory& trajectory);
   void insert(const std::vector<Feature>& features, const Trajectory& trajectory);
+
+  // The start, in tracker_start.cpp.
+  void rewind();
+  Solution try_start(Start& start);
+  Solution refine(Start& start, int rounds);
+  Solution start();
+  std::vector<Start> rivals(std::vector<Start> tried);
+  void rehearse(Start& start);
+  void decide();
+  void remember(const Timing& timing, const std::vector<Feature>& all,
+                const std::vector<Feature>& chosen);
   [[nodiscard]] TrackingStatus status_of(const Scan& scan, const Solution& solution,
                                          std::size_t feature_count) const;
   [[nodiscard]] Estimate estimate(const Scan& scan, const Solution& solution,
@@ -43,8 +72,8 @@ class Tracker {
   std::int64_t last_end_ns_ = 0;
   int scan_count_ = 0;
   TrackingStatus status_ = TrackingStatus::initializing;
-  std::vector<Feature> first_features_;  // of the first scan, until its motion is known
-  double first_span_s_ = 0.0;
+  std::vector<Seen> seen_;     // the first scans, until the motion is known
+  std::vector<Start> starts_;  // what fits them: the one in force first
 };
 
 }  // namespace lilo::standard

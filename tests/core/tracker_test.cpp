@@ -65,6 +65,43 @@ TEST(DefaultProfile, StartsInMotion) {
   EXPECT_LT(result.worst_rad, 0.005);
 }
 
+// Ground looks the same at every speed: only the posts beside the road tell.
+TEST(DefaultProfile, OnAPlainRoadSaysNothingItIsNotSureOf) {
+  test::Scene road;
+  road.planes = {{{0.0, 0.0, 1.0}, -1.8}};
+  for (int k = 0; k < 24; ++k) {
+    const double along_m = -100.0 + 11.0 * k + 3.0 * std::sin(2.0 * k);
+    road.poles.push_back({along_m, k % 2 == 0 ? 9.0 : -7.0, 0.25, 3.0});
+  }
+  const auto at = [](double t_s) {
+    return Pose{Eigen::Quaterniond::Identity(), {22.0 * t_s, 0, 0}};
+  };
+  Odometry odometry{OdometryConfig{}};
+  for (int k = 0; k < 15; ++k) {
+    const Scan scan = test::scan_of(
+        road, k16, 1800, [&](double s) { return at(0.1 * (k + s)); },
+        static_cast<std::uint64_t>(k));
+    const Estimate e = odometry.process(scan);
+    if (e.status != TrackingStatus::tracking) continue;
+    EXPECT_NEAR(e.twist.linear_mps.x(), 22.0, 0.7) << "scan " << k;
+    EXPECT_NEAR(e.T_odom_sensor.translation_m.x(), 2.2 * k, 1.0) << "scan " << k;
+  }
+}
+
+TEST(DefaultProfile, DoesNotStartFromAPieceOfATurn) {
+  Odometry odometry{OdometryConfig{}};
+  for (std::uint64_t k = 0; k < 4; ++k) {
+    Scan scan = test::scan_of(
+        test::yard(), k16, 900, [](double) { return Pose{}; }, k);
+    if (k == 0) scan.returns.resize(scan.returns.size() / 12);
+    const Estimate e = odometry.process(scan);
+    if (k < 2) {
+      EXPECT_EQ(e.status, TrackingStatus::initializing) << "scan " << k;
+    }
+    EXPECT_LT(e.T_odom_sensor.translation_m.norm(), 0.05) << "scan " << k;
+  }
+}
+
 TEST(DefaultProfile, TwistIsThatOfTheLastFiring) {
   const Result result = run(k16, 6.0);
   const double end_s = 2.5, h = 1e-4;
