@@ -186,6 +186,8 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
       solution.end_information = marginal_of_last(H);
     }
   }
+  const KnotInformation predicted = propagated(prior.begin_information, prior.span_s);
+  solution.prediction_information = predicted.inverse().topLeftCorner<6, 6>().inverse();
   return solution;
 }
 

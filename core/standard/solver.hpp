@@ -46,11 +46,12 @@ struct SolverConfig {
 struct Solution {
   Trajectory trajectory;
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
-  Matrix6d data_information = Matrix6d::Zero();               ///< of the pose, from data alone
-  int matched = 0;               ///< features that found a distribution
-  double inliers = 0;            ///< sum of robust weights
-  double structure_inliers = 0;  ///< of them what is not ground
-  double mean_square = 0.0;      ///< weighted mean of squared residuals in sigmas
+  Matrix6d data_information = Matrix6d::Zero();               ///< of the pose, from the scan alone
+  Matrix6d prediction_information = Matrix6d::Zero();  ///< of the pose, before the scan was seen
+  int matched = 0;                                     ///< features that found a distribution
+  double inliers = 0;                                  ///< sum of robust weights
+  double structure_inliers = 0;                        ///< of them what is not ground
+  double mean_square = 0.0;  ///< weighted mean of squared residuals in sigmas
   int iterations = 0;
   bool converged = false;
 };

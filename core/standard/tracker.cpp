@@ -1,5 +1,7 @@
 #include "core/standard/tracker.hpp"
 
+#include "core/standard/weak_directions.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -178,6 +180,13 @@ Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
   e.map_surface_count = maps_.size();
   e.correspondence_count = solution.matched;
   e.iterations = solution.iterations;
+  if (scan_count_ > 1 && status_ != TrackingStatus::lost) {
+    const WeakDirections weak = weak_directions(
+        solution.data_information, solution.prediction_information, T_odom_sensor_.rotation);
+    e.weak_directions = weak.all;
+    e.weak_count = weak.count;
+    if (weak.count > 0 && status_ == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
+  }
   e.residual_rms_sigma = std::sqrt(solution.mean_square);
   return e;
 }

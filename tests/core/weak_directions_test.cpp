@@ -1,0 +1,75 @@
+#include "core/standard/weak_directions.hpp"
+
+#include "core/odometry.hpp"
+#include "core/pose.hpp"
+#include "tests/core/analytic_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace lilo {
+namespace {
+
+const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
+
+/// Drives straight along x and returns the last estimate.
+Estimate drive_through(const test::Scene& scene) {
+  Odometry odometry{OdometryConfig{}};
+  Estimate last;
+  for (int k = 0; k < 20; ++k) {
+    const Scan scan = test::scan_of(
+        scene, k16, 900,
+        [&](double s) {
+          return Pose{Eigen::Quaterniond::Identity(), {0.05 * (k + s), 0.0, 0.0}};
+        },
+        static_cast<std::uint64_t>(k));
+    last = odometry.process(scan);
+  }
+  return last;
+}
+
+TEST(WeakDirections, IsTheOneThatTheScanLeavesToThePrediction) {
+  Vector6d scan, prediction;
+  scan << 900, 900, 900, 300, 25, 900;  // rx ry rz x y z
+  prediction << 100, 100, 100, 100, 100, 100;
+  const Eigen::Quaterniond quarter_turn(
+      Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
+  const auto weak =
+      standard::weak_directions(scan.asDiagonal(), prediction.asDiagonal(), quarter_turn);
+  ASSERT_EQ(weak.count, 1);
+  EXPECT_NEAR(weak.all[0].from_scan, 0.2, 1e-9);  // 25 of 125
+  // y of the odometry's frame is x of a sensor that is turned left by a quarter.
+  EXPECT_NEAR(std::abs(weak.all[0].direction[0]), 1.0, 1e-9);
+}
+
+TEST(WeakDirections, NoneWhereTheScanKnowsMore) {
+  const Matrix6d one = Matrix6d::Identity();
+  EXPECT_EQ(standard::weak_directions(1.1 * one, one, Eigen::Quaterniond::Identity()).count, 0);
+}
+
+TEST(WeakDirections, AScanThatSaysNothingIsWeakEverywhere) {
+  const auto weak = standard::weak_directions(Matrix6d::Zero(), Matrix6d::Identity(),
+                                              Eigen::Quaterniond::Identity());
+  ASSERT_EQ(weak.count, 6);
+  for (const WeakDirection& one : weak.all) EXPECT_EQ(one.from_scan, 0.0);
+}
+
+TEST(WeakDirections, AlongATunnel) {
+  test::Scene tunnel;
+  tunnel.planes = {{{0.0, 0.0, 1.0}, -1.5}, {{0.0, -1.0, 0.0}, -3.0}, {{0.0, 1.0, 0.0}, -3.0}};
+  const Estimate e = drive_through(tunnel);
+  ASSERT_EQ(e.weak_count, 1);
+  EXPECT_GT(std::abs(e.weak_directions[0].direction[0]), 0.99);
+  EXPECT_EQ(e.status, TrackingStatus::degraded);
+}
+
+TEST(WeakDirections, NoneInAYard) {
+  const Estimate e = drive_through(test::yard());
+  EXPECT_EQ(e.weak_count, 0);
+  EXPECT_EQ(e.status, TrackingStatus::tracking);
+}
+
+}  // namespace
+}  // namespace lilo
