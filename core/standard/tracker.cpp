@@ -46,6 +46,9 @@ Tracker::Tracker(const OdometryConfig& config)
       solver_(solver_config(config.standard)),
       information_(first_information()) {}
 
+constexpr std::size_t kMinFeatures = 100;
+constexpr int kScansToGiveUp = 10;  // that saw enough and found nothing of it in the map
+
 Estimate Tracker::process(const Scan& scan, StageHook hook) {
   const std::vector<Feature>& features =
       image_.build(scan, config_.min_range_m, config_.max_range_m);
@@ -62,7 +65,11 @@ Estimate Tracker::process(const Scan& scan, StageHook hook) {
   grow_map(features, solution.trajectory);
   hook(Stage::update_map);
   ++scan_count_;
-  return estimate(scan, solution, chosen);
+  Estimate result = estimate(scan, solution, chosen);
+  const bool in_vain = status_ == TrackingStatus::lost && chosen.size() >= kMinFeatures;
+  lost_scans_ = in_vain ? lost_scans_ + 1 : 0;
+  if (lost_scans_ == kScansToGiveUp) start_anew();
+  return result;
 }
 
 std::vector<Eigen::Vector3f> Tracker::map_points() const {
@@ -71,6 +78,7 @@ std::vector<Eigen::Vector3f> Tracker::map_points() const {
                    static_cast<std::size_t>(maps_.structure_fine.size()));
   maps_.ground_fine.append_means(points_m);
   maps_.structure_fine.append_means(points_m);
+  for (Eigen::Vector3f& p : points_m) p = (T_odom_start_ * p.cast<double>()).cast<float>();
   return points_m;
 }
 
@@ -113,10 +121,10 @@ TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
                                   std::size_t feature_count) const {
   constexpr double kMinMatched = 0.2;  // of the features
   constexpr double kMinWeight = 0.3;   // mean robust weight; a good alignment has 0.7 and more
-  constexpr int kMinFeatures = 100;
   if (scan_count_ == 0) return TrackingStatus::initializing;
   const double matched = solution.matched;
-  if (matched < kMinFeatures || matched < kMinMatched * static_cast<double>(feature_count) ||
+  if (matched < static_cast<double>(kMinFeatures) ||
+      matched < kMinMatched * static_cast<double>(feature_count) ||
       solution.inliers < kMinWeight * matched) {
     return TrackingStatus::lost;
   }
@@ -171,7 +179,7 @@ Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
   Estimate e;
   e.scan_index = scan.index;
   e.stamp_ns = scan.end_ns;
-  e.T_odom_sensor = T_odom_sensor_;
+  e.T_odom_sensor = T_odom_start_ * T_odom_sensor_;
   e.twist = twist_;
   e.status = status_;
   e.ground_count = static_cast<int>(std::count_if(

@@ -38,12 +38,13 @@ class Tracker {
 
   static KnotInformation first_information();
   static double span_of(const Timing& timing);
-  [[nodiscard]] Prior predict(const Timing& timing) const;
-  void accept(const Timing& timing, const Prior& prior, const Solution& solution);
+  [[nodiscard]] Prior predict(const Timing& scan) const;
+  void accept(const Timing& scan, const Prior& prior, const Solution& solution);
   void grow_map(const std::vector<Feature>& features, const Trajectory& trajectory);
   void insert(const std::vector<Feature>& features, const Trajectory& trajectory);
 
   // The start, in tracker_start.cpp.
+  void start_anew();
   void rewind();
   Solution try_start(Start& start);
   Solution refine(Start& start, int rounds);
@@ -65,7 +66,9 @@ class Tracker {
   Solver solver_;
   Sampled sampled_;
 
+  Pose T_odom_start_;  // where the map in force was begun; all other poses here are from there
   Pose T_odom_sensor_;
+  int lost_scans_ = 0;
   Twist twist_;
   KnotInformation information_;  // of the pose and its rate at the last scan's end
   Pose T_odom_keyframe_;

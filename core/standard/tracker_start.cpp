@@ -34,6 +34,20 @@ void Tracker::remember(const Timing& timing, const std::vector<Feature>& all,
   if (scan_count_ >= 2 && !undecided) seen_ = {};
 }
 
+/// Gives the map up and begins another where the prediction ends: wherever the sensor is now, it is
+/// not where the map knows it, and only a new map ever lets it track again.
+void Tracker::start_anew() {
+  T_odom_start_ = T_odom_start_ * T_odom_sensor_;
+  T_odom_sensor_ = {};
+  T_odom_keyframe_ = {};
+  twist_ = {};
+  information_ = first_information();
+  maps_.clear();
+  seen_.clear();
+  starts_.clear();
+  scan_count_ = lost_scans_ = 0;
+}
+
 /// As after the first scan.
 void Tracker::rewind() {
   T_odom_sensor_ = {};

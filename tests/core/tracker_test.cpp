@@ -152,6 +152,35 @@ TEST(DefaultProfile, EmptyScansAreReportedAndTheMotionGoesOn) {
   }
 }
 
+// Carried elsewhere while it was blind: nothing of the old map is seen again.
+TEST(DefaultProfile, BeginsAnotherMapWhereTheOldOneIsOfNoUse) {
+  test::Scene elsewhere;
+  elsewhere.planes = {
+      {{0.0, 0.0, 1.0}, -6.0}, {{0.0, -0.8, 0.6}, -30.0}, {{-0.8, 0.0, 0.6}, -35.0}};
+  elsewhere.poles = {{25.0, 25.0, 6.0, 60.0}, {-22.0, 20.0, 4.0, 60.0}, {-30.0, -9.0, 5.0, 60.0}};
+  Odometry odometry{OdometryConfig{}};
+  std::vector<TrackingStatus> status;
+  Pose before, settled, last;
+  for (int k = 0; k < 60; ++k) {
+    const Scan scan = test::scan_of(
+        k < 20 ? test::yard() : elsewhere, k16, 900,
+        [&](double s) {
+          return Pose{Eigen::Quaterniond::Identity(),
+                      {k < 45 ? 0.0 : 0.02 * (k - 45 + s), 0.0, 0.0}};
+        },
+        static_cast<std::uint64_t>(k));
+    const Estimate e = odometry.process(scan);
+    status.push_back(e.status);
+    if (k == 19) before = e.T_odom_sensor;
+    if (k == 44) settled = e.T_odom_sensor;
+    last = e.T_odom_sensor;
+  }
+  EXPECT_EQ(status[20], TrackingStatus::lost);
+  EXPECT_EQ(status[44], TrackingStatus::tracking);
+  EXPECT_LT((settled.translation_m - before.translation_m).norm(), 0.3);
+  EXPECT_NEAR((settled.inverse() * last).translation_m.x(), 0.3, 0.1);  // it follows again
+}
+
 TEST(DefaultProfile, AScanWithoutBeamsIsNoReasonToThrow) {
   Odometry odometry{OdometryConfig{}};
   EXPECT_NO_THROW(odometry.process(Scan{}));
