@@ -99,10 +99,11 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   const float ground_c2 = config_.ground_kernel * config_.ground_kernel;
   const float structure_c2 = config_.structure_kernel * config_.structure_kernel;
   double weights = 0.0, squares = 0.0, structure = 0.0;
-  solution.matched = 0;
+  solution.asked = solution.matched = 0;
   const float data_weight = config_.data_weight * static_cast<float>(stride);
   for (std::size_t k = 0; k < features.size(); k += stride) {
     const Feature& f = features[k];
+    ++solution.asked;
     const Eigen::Vector3f turned = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
     const Eigen::Vector3d q = turned.cast<double>() + sampled_.origin_m(f.s);
     const bool ground = f.kind == Kind::ground;

@@ -48,6 +48,7 @@ struct Solution {
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
   Matrix6d data_information = Matrix6d::Zero();               ///< of the pose, from the scan alone
   Matrix6d prediction_information = Matrix6d::Zero();  ///< of the pose, before the scan was seen
+  int asked = 0;                                       ///< features looked up
   int matched = 0;                                     ///< features that found a distribution
   double inliers = 0;                                  ///< sum of robust weights
   double structure_inliers = 0;                        ///< of them what is not ground

@@ -62,7 +62,7 @@ Estimate Tracker::process(const Scan& scan, StageHook hook) {
   status_ = status_of(scan, solution, chosen.size());
   hook(Stage::align);
   accept(timing, prior, solution);
-  grow_map(features, solution.trajectory);
+  grow_map(features, solution);
   hook(Stage::update_map);
   ++scan_count_;
   Estimate result = estimate(scan, solution, chosen);
@@ -145,16 +145,20 @@ void Tracker::accept(const Timing& scan, const Prior& prior, const Solution& sol
   information_ = solution.end_information;
 }
 
-void Tracker::grow_map(const std::vector<Feature>& features, const Trajectory& trajectory) {
+void Tracker::grow_map(const std::vector<Feature>& features, const Solution& solution) {
   const StandardConfig& c = config_.standard;
   maps_.forget_beyond(T_odom_sensor_.translation_m, c.map_radius_m);
   if (status_ == TrackingStatus::lost) return;
   const Pose moved_by = T_odom_keyframe_.inverse() * T_odom_sensor_;
-  if (scan_count_ > 0 && moved_by.translation_m.norm() < c.keyframe_m &&
+  // One scan of an open country fills few cells with enough points; standing still adds them.
+  constexpr double kKnowsEnough = 0.5;
+  const bool young = keyframes_ < kYoung && solution.matched < kKnowsEnough * solution.asked;
+  if (scan_count_ > 0 && !young && moved_by.translation_m.norm() < c.keyframe_m &&
       so3_log(moved_by.rotation).norm() < c.keyframe_rad) {
     return;
   }
-  insert(features, trajectory);
+  insert(features, solution.trajectory);
+  ++keyframes_;
   T_odom_keyframe_ = T_odom_sensor_;
 }
 

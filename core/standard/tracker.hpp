@@ -17,6 +17,7 @@ class Tracker {
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
  private:
+  static constexpr int kYoung = 5;  // keyframes of a map that may know too little
   struct Timing {
     std::int64_t start_ns = 0, end_ns = 0;
     bool motion_compensated = false;
@@ -40,7 +41,7 @@ class Tracker {
   static double span_of(const Timing& timing);
   [[nodiscard]] Prior predict(const Timing& scan) const;
   void accept(const Timing& scan, const Prior& prior, const Solution& solution);
-  void grow_map(const std::vector<Feature>& features, const Trajectory& trajectory);
+  void grow_map(const std::vector<Feature>& features, const Solution& solution);
   void insert(const std::vector<Feature>& features, const Trajectory& trajectory);
 
   // The start, in tracker_start.cpp.
@@ -50,7 +51,7 @@ class Tracker {
   Solution refine(Start& start, int rounds);
   Solution start();
   std::vector<Start> rivals(std::vector<Start> tried);
-  void rehearse(Start& start);
+  void rehearse(Start& start, bool fill_map);
   void decide();
   void remember(const Timing& timing, const std::vector<Feature>& all,
                 const std::vector<Feature>& chosen);
@@ -69,6 +70,7 @@ class Tracker {
   Pose T_odom_start_;  // where the map in force was begun; all other poses here are from there
   Pose T_odom_sensor_;
   int lost_scans_ = 0;
+  int keyframes_ = 0;  // in the map in force
   Twist twist_;
   KnotInformation information_;  // of the pose and its rate at the last scan's end
   Pose T_odom_keyframe_;

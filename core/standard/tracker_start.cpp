@@ -26,7 +26,7 @@ void Tracker::remember(const Timing& timing, const std::vector<Feature>& all,
   if (scan_count_ == 1 && all.size() > 2 * seen_.front().all.size()) {
     maps_.clear();
     seen_.clear();
-    scan_count_ = 0;
+    scan_count_ = keyframes_ = 0;
   }
   const bool undecided = starts_.size() > 1;
   if (scan_count_ < 2 || undecided) seen_.push_back({timing, all, chosen});
@@ -45,7 +45,7 @@ void Tracker::start_anew() {
   maps_.clear();
   seen_.clear();
   starts_.clear();
-  scan_count_ = lost_scans_ = 0;
+  scan_count_ = lost_scans_ = keyframes_ = 0;
 }
 
 /// As after the first scan.
@@ -55,7 +55,7 @@ void Tracker::rewind() {
   twist_ = {};
   information_ = first_information();
   last_end_ns_ = seen_[0].timing.end_ns;
-  scan_count_ = 1;
+  scan_count_ = keyframes_ = 1;
 }
 
 /// Aligns the second scan when the sensor moved by about `start.twist` during both: the first one,
@@ -143,7 +143,9 @@ std::vector<Tracker::Start> Tracker::rivals(std::vector<Start> tried) {
 }
 
 /// Takes all scans but the last through a start, and sums up how the later ones fit its map.
-void Tracker::rehearse(Start& start) {
+/// Without `fill_map` only motion makes it grow: standing still, tried in vain, would hide in a map
+/// that every scan fills.
+void Tracker::rehearse(Start& start, bool fill_map) {
   Solution solution = try_start(start);
   start.inliers = start.structure = start.misfit = 0.0;
   status_ = TrackingStatus::tracking;
@@ -157,7 +159,8 @@ void Tracker::rehearse(Start& start) {
     }
     if (k + 1 == seen_.size()) break;
     accept(seen_[k].timing, prior, solution);
-    grow_map(seen_[k].all, solution.trajectory);
+    if (!fill_map) keyframes_ = kYoung;
+    grow_map(seen_[k].all, solution);
     ++scan_count_;
   }
 }
@@ -167,7 +170,7 @@ void Tracker::rehearse(Start& start) {
 /// stands.
 void Tracker::decide() {
   constexpr double kClearlyMore = 1.05, kMuchMore = 1.5, kAboutAsMuch = 0.8;
-  for (Start& s : starts_) rehearse(s);
+  for (Start& s : starts_) rehearse(s, false);
   const Start first = starts_[0];
   Start* winner = starts_.data();
   for (Start& s : starts_) {
@@ -177,7 +180,7 @@ void Tracker::decide() {
     if ((more || stands) && s.inliers > winner->inliers) winner = &s;
     if (stands && winner == starts_.data()) winner = &s;
   }
-  rehearse(*winner);
+  rehearse(*winner, true);
   starts_ = {};
   seen_ = {};
 }
