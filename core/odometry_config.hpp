@@ -35,7 +35,7 @@ struct PaperConfig {
   double neighbourhood_m = 1.0;   ///< radius of the covariance of map points, Section 4
   double map_radius_m = 100.0;    ///< the map is cropped to a box of this half-width
   double huber_m = 0.1;           ///< residuals beyond this weigh less
-  int max_iterations = 8;         ///< Gauss-Newton steps, correspondences sought at each
+  int max_iterations = 8;         ///< Gauss-Newton steps
 };
 
 /// The default profile: features of the image plane on a map of Gaussian cells.

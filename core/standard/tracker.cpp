@@ -9,6 +9,9 @@
 namespace lilo::standard {
 namespace {
 
+constexpr std::size_t kMinFeatures = 100;
+constexpr int kScansToGiveUp = 10;  // that saw enough and found nothing of it in the map
+
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
 CellMap make_map(const StandardConfig& config, double cell_m, int capacity) {
@@ -45,9 +48,6 @@ Tracker::Tracker(const OdometryConfig& config)
       maps_(make_maps(config.standard)),
       solver_(solver_config(config.standard)),
       information_(first_information()) {}
-
-constexpr std::size_t kMinFeatures = 100;
-constexpr int kScansToGiveUp = 10;  // that saw enough and found nothing of it in the map
 
 Estimate Tracker::process(const Scan& scan, StageHook hook) {
   const std::vector<Feature>& features =
@@ -128,7 +128,7 @@ TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
       solution.inliers < kMinWeight * matched) {
     return TrackingStatus::lost;
   }
-  if (starts_.size() > 1) return TrackingStatus::initializing;  // another motion fits as well
+  if (!starts_.empty()) return TrackingStatus::initializing;  // another motion fits as well
   return scan.complete && solution.converged ? TrackingStatus::tracking : TrackingStatus::degraded;
 }
 

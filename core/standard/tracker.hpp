@@ -46,6 +46,7 @@ class Tracker {
 
   // The start, in tracker_start.cpp.
   void start_anew();
+  void stand_at_origin();
   void rewind();
   Solution try_start(Start& start);
   Solution refine(Start& start, int rounds);
@@ -78,7 +79,7 @@ class Tracker {
   int scan_count_ = 0;
   TrackingStatus status_ = TrackingStatus::initializing;
   std::vector<Seen> seen_;     // the first scans, until the motion is known
-  std::vector<Start> starts_;  // what fits them: the one in force first
+  std::vector<Start> starts_;  // where several fit them: the one in force first
 };
 
 }  // namespace lilo::standard

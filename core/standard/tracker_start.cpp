@@ -24,36 +24,33 @@ void Tracker::remember(const Timing& timing, const std::vector<Feature>& all,
   // A first scan that saw less than half of the second is no ground to start from: packets were
   // lost, or the recording began in the middle of a turn.
   if (scan_count_ == 1 && all.size() > 2 * seen_.front().all.size()) {
-    maps_.clear();
-    seen_.clear();
-    scan_count_ = keyframes_ = 0;
+    start_anew();
   }
-  const bool undecided = starts_.size() > 1;
-  if (scan_count_ < 2 || undecided) seen_.push_back({timing, all, chosen});
-  if (undecided && seen_.size() == kScansToDecide) decide();
-  if (scan_count_ >= 2 && !undecided) seen_ = {};
+  if (scan_count_ < 2 || !starts_.empty()) seen_.push_back({timing, all, chosen});
+  if (seen_.size() == kScansToDecide) decide();
 }
 
 /// Gives the map up and begins another where the prediction ends: wherever the sensor is now, it is
 /// not where the map knows it, and only a new map ever lets it track again.
 void Tracker::start_anew() {
   T_odom_start_ = T_odom_start_ * T_odom_sensor_;
-  T_odom_sensor_ = {};
-  T_odom_keyframe_ = {};
-  twist_ = {};
-  information_ = first_information();
+  stand_at_origin();
   maps_.clear();
   seen_.clear();
   starts_.clear();
   scan_count_ = lost_scans_ = keyframes_ = 0;
 }
 
-/// As after the first scan.
-void Tracker::rewind() {
+void Tracker::stand_at_origin() {
   T_odom_sensor_ = {};
   T_odom_keyframe_ = {};
   twist_ = {};
   information_ = first_information();
+}
+
+/// As after the first scan.
+void Tracker::rewind() {
+  stand_at_origin();
   last_end_ns_ = seen_[0].timing.end_ns;
   scan_count_ = keyframes_ = 1;
 }
@@ -119,7 +116,11 @@ Solution Tracker::start() {
   Start in_force = tried[0];
   starts_ = rivals(tried);
   Solution solution = refine(in_force, kMaxRounds);
-  starts_.insert(starts_.begin(), in_force);
+  if (starts_.empty()) {
+    seen_ = {};  // nothing else fits: the motion is known
+  } else {
+    starts_.insert(starts_.begin(), in_force);
+  }
   return solution;
 }
 
@@ -149,6 +150,7 @@ void Tracker::rehearse(Start& start, bool fill_map) {
   Solution solution = try_start(start);
   start.inliers = start.structure = start.misfit = 0.0;
   status_ = TrackingStatus::tracking;
+  if (!fill_map) keyframes_ = kYoung;
   for (std::size_t k = 1; k < seen_.size(); ++k) {
     const Prior prior = predict(seen_[k].timing);
     if (k > 1) {
@@ -159,7 +161,6 @@ void Tracker::rehearse(Start& start, bool fill_map) {
     }
     if (k + 1 == seen_.size()) break;
     accept(seen_[k].timing, prior, solution);
-    if (!fill_map) keyframes_ = kYoung;
     grow_map(seen_[k].all, solution);
     ++scan_count_;
   }
@@ -171,16 +172,15 @@ void Tracker::rehearse(Start& start, bool fill_map) {
 void Tracker::decide() {
   constexpr double kClearlyMore = 1.05, kMuchMore = 1.5, kAboutAsMuch = 0.8;
   for (Start& s : starts_) rehearse(s, false);
-  const Start first = starts_[0];
-  Start* winner = starts_.data();
+  const Start& first = starts_[0];
+  Start* winner = nullptr;
   for (Start& s : starts_) {
     const bool more = s.inliers > kClearlyMore * first.inliers && s.misfit < first.misfit;
     const bool stands =
         s.structure > kMuchMore * first.structure && s.inliers > kAboutAsMuch * first.inliers;
-    if ((more || stands) && s.inliers > winner->inliers) winner = &s;
-    if (stands && winner == starts_.data()) winner = &s;
+    if ((more || stands) && (winner == nullptr || s.inliers > winner->inliers)) winner = &s;
   }
-  rehearse(*winner, true);
+  rehearse(winner != nullptr ? *winner : starts_[0], true);
   starts_ = {};
   seen_ = {};
 }
