@@ -91,6 +91,8 @@ std::string_view write(const std::string& session, const Health& h, bool with_st
 /// Lines of Prometheus' text format.
 class Metrics {
  public:
+  explicit Metrics(std::string& text) : text_(text) { text_.clear(); }
+
   void counter(const char* name, const char* help, double value) {
     add(name, help, "counter", value);
   }
@@ -105,7 +107,6 @@ class Metrics {
     fmt::format_to(to(), "# HELP {} {}\n# TYPE {} gauge\n{}{{{}=\"{}\"}} 1\n", name, help, name,
                    name, key, value);
   }
-  std::string take() { return std::move(text_); }
 
  private:
   std::back_insert_iterator<std::string> to() { return std::back_inserter(text_); }
@@ -113,7 +114,7 @@ class Metrics {
     fmt::format_to(to(), "# HELP {} {}\n# TYPE {} {}\n{} {:.15g}\n", name, help, name, type, name,
                    value);
   }
-  std::string text_;
+  std::string& text_;
 };
 
 }  // namespace
@@ -130,8 +131,8 @@ const char* to_string(ClockSource clock) {
   return "host";
 }
 
-std::vector<std::string_view> complaints(const Health& h) {
-  std::vector<std::string_view> out;
+Complaints complaints(const Health& h) {
+  Complaints out;
   if (h.sensor_silent_s > kSilentAfterS) out.emplace_back("sensor silent");
   if (h.calibration_progress < 1.0) out.emplace_back("waiting for the calibration");
   if (h.status == TrackingStatus::lost) out.emplace_back("lost");
@@ -149,9 +150,9 @@ std::string_view write_health(const std::string& session, const Health& health, 
   return whole.empty() ? write(session, health, false, out) : whole;
 }
 
-std::string to_prometheus(const std::string& session, const Health& h) {
+void write_prometheus(const std::string& session, const Health& h, std::string& out) {
   const auto d = [](auto count) { return static_cast<double>(count); };
-  Metrics m;
+  Metrics m(out);
   m.label("lilo_session_info", "The session that is running.", "session", session);
   m.label("lilo_status_info", "Tracking status.", "status", to_string(h.status));
   m.gauge("lilo_uptime_seconds", "Since the start.", h.uptime_s);
@@ -181,7 +182,6 @@ std::string to_prometheus(const std::string& session, const Health& h) {
   m.counter("lilo_worker_minor_faults_total", "Page faults of the worker since it was warm.",
             d(h.worker_minor_faults));
   m.gauge("lilo_resident_bytes", "Memory in use.", h.resident_mb * 1048576.0);
-  return m.take();
 }
 
 }  // namespace lilo

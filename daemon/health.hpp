@@ -6,11 +6,12 @@
 #include "daemon/recent.hpp"
 #include "drivers/scan_builder.hpp"
 
+#include <boost/container/static_vector.hpp>
+
 #include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace lilo {
 
@@ -43,13 +44,15 @@ struct Health {
 };
 
 /// What keeps `health` from being good, in words; empty when nothing does.
-std::vector<std::string_view> complaints(const Health& health);
+using Complaints = boost::container::static_vector<std::string_view, 9>;
+Complaints complaints(const Health& health);
 
 /// The health datagram of PROTOCOL.md.
 std::string_view write_health(const std::string& session, const Health& health, JsonWriter& out);
 
-/// The same for Prometheus' node_exporter, in its text format.
-std::string to_prometheus(const std::string& session, const Health& health);
+/// The same for Prometheus' node_exporter, in its text format, in place of what `out` held. It
+/// keeps its memory: from the second time on, nothing is allocated.
+void write_prometheus(const std::string& session, const Health& health, std::string& out);
 
 const char* to_string(ClockSource clock);
 

@@ -2,9 +2,13 @@
 
 #include "daemon/clock.hpp"
 
-#include <fstream>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <utility>
 
 namespace lilo {
 namespace {
@@ -17,11 +21,18 @@ std::uint64_t major_faults() {
   return static_cast<std::uint64_t>(usage.ru_majflt);
 }
 
+// The second number of /proc/self/statm, in pages. By read(2), because a stream allocates.
 double resident_mb() {
-  long total_pages = 0, resident_pages = 0;
-  std::ifstream("/proc/self/statm") >> total_pages >> resident_pages;
-  return static_cast<double>(resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) /
-         1048576.0;
+  std::array<char, 64> text{};
+  const int fd = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return 0.0;
+  const ssize_t size = read(fd, text.data(), text.size());
+  close(fd);
+  const char* const end = text.data() + std::max<ssize_t>(size, 0);
+  const char* const space = std::find(std::as_const(text).data(), end, ' ');
+  long pages = 0;
+  if (space != end) std::from_chars(space + 1, end, pages);
+  return static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
 }
 
 }  // namespace
@@ -45,12 +56,11 @@ void HealthMonitor::add(const PoseReport& report, double latency_ms) {
   if (++reports_ <= kWarmAfterScans) faults_when_warm_ = faults_now_;
 }
 
-Health HealthMonitor::collect(const PublisherCounts& published) {
+void HealthMonitor::collect(const PublisherCounts& published, Health& h) {
   const std::int64_t now_ns = monotonic_ns();
   const PipelineCounters& counters = engine_.counters();
   const std::int64_t last_packet_ns = engine_.receiver().last_packet_ns();
   const double elapsed_s = static_cast<double>(now_ns - last_look_ns_) * 1e-9;
-  Health h;
   h.stamp_ns = realtime_ns();
   h.uptime_s = static_cast<double>(now_ns - start_ns_) * 1e-9;
   h.status = status_;
@@ -82,7 +92,6 @@ Health HealthMonitor::collect(const PublisherCounts& published) {
   metrics_error_ = false;
   poses_at_last_look_ = published.poses_sent;
   last_look_ns_ = now_ns;
-  return h;
 }
 
 }  // namespace lilo

@@ -23,8 +23,8 @@ class HealthMonitor {
   void add(const PoseReport& report, double latency_ms);
   void config_was_bad(bool bad) { config_error_ = bad; }
   void metrics_failed() { metrics_error_ = true; }
-  /// Once a second.
-  Health collect(const PublisherCounts& published);
+  /// Once a second. Allocates nothing when `h` has been through it before.
+  void collect(const PublisherCounts& published, Health& h);
 
  private:
   const Engine& engine_;

@@ -2,12 +2,15 @@
 
 #include "daemon/clock.hpp"
 
+#include <array>
 #include <charconv>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <sys/socket.h>
+#include <sys/uio.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -28,7 +31,7 @@ std::int64_t number(std::string_view text) {
 
 // The protocol is one datagram of NAME=value lines to a Unix socket, whose name may start with '@'
 // for the abstract namespace.
-void send(const std::string& text, int flags) {
+void send(std::string_view assignment, std::string_view text, int flags) {
   const std::string_view path = environment("NOTIFY_SOCKET");
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -37,25 +40,31 @@ void send(const std::string& text, int flags) {
   if (path[0] == '@') address.sun_path[0] = '\0';
   const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (fd < 0) return;
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + path.size());
-  sendto(fd, text.data(), text.size(), flags | MSG_NOSIGNAL,
-         reinterpret_cast<const sockaddr*>(&address), size);
+  // sendmsg(2) only reads what it is given, whatever its type says.
+  std::array<iovec, 2> parts{{{const_cast<char*>(assignment.data()), assignment.size()},
+                              {const_cast<char*>(text.data()), text.size()}}};
+  msghdr message{};
+  message.msg_name = &address;
+  message.msg_namelen = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + path.size());
+  message.msg_iov = parts.data();
+  message.msg_iovlen = parts.size();
+  sendmsg(fd, &message, flags | MSG_NOSIGNAL);
   close(fd);
 }
 
 }  // namespace
 
-void ready(const std::string& status) { send("READY=1\nSTATUS=" + status, 0); }
+void ready(std::string_view status) { send("READY=1\nSTATUS=", status, 0); }
 
-void status(const std::string& status) { send("STATUS=" + status, MSG_DONTWAIT); }
+void status(std::string_view status) { send("STATUS=", status, MSG_DONTWAIT); }
 
 void reloading() {
-  send("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000), MSG_DONTWAIT);
+  send("RELOADING=1\nMONOTONIC_USEC=", std::to_string(monotonic_ns() / 1000), MSG_DONTWAIT);
 }
 
-void stopping() { send("STOPPING=1", MSG_DONTWAIT); }
+void stopping() { send("STOPPING=1", "", MSG_DONTWAIT); }
 
-void watchdog() { send("WATCHDOG=1", MSG_DONTWAIT); }
+void watchdog() { send("WATCHDOG=1", "", MSG_DONTWAIT); }
 
 std::int64_t watchdog_interval_us() {
   const std::string_view pid = environment("WATCHDOG_PID");

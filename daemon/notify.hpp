@@ -1,15 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <string_view>
 
 /// sd_notify(3) in words. libsystemd's own call waits while systemd does not read, and with it
-/// would wait the thread that publishes poses; these never wait, but for ready(). Each does nothing
-/// when systemd did not start us.
+/// would wait the thread that publishes poses; these never wait, but for ready(), nor do they
+/// allocate. Each does nothing when systemd did not start us.
 namespace lilo::notify {
 
-void ready(const std::string& status);
-void status(const std::string& status);
+void ready(std::string_view status);
+void status(std::string_view status);
 void reloading();
 void stopping();
 void watchdog();

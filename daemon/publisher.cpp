@@ -3,7 +3,6 @@
 #include "daemon/base_frame.hpp"
 #include "daemon/clock.hpp"
 #include "daemon/map_file.hpp"
-#include "daemon/metrics_file.hpp"
 
 #include <utility>
 
@@ -18,6 +17,7 @@ Publisher::Publisher(boost::asio::io_context& io, const Config& config, Engine& 
       T_base_sensor_(to_pose(config.publish.T_base_sensor)),
       mounted_(!is_identity(config.publish.T_base_sensor)),
       record_(static_cast<std::size_t>(config.state.trajectory_poses)),
+      metrics_file_(metrics_path(config.health.metrics_file)),
       sinks_(io),
       server_(io, config.subscribe, config.publish,
               {.last_pose = [this] { return last_pose_; },
@@ -33,6 +33,7 @@ void Publisher::configure(const Config& config) {
   config_ = config;
   sinks_.set(config.publish.sinks);
   server_.configure(config.subscribe);
+  metrics_file_ = ReplacedFile(metrics_path(config.health.metrics_file));
 }
 
 void Publisher::take_reports() {
@@ -139,11 +140,10 @@ std::string_view Publisher::write_health_now() {
 
 void Publisher::tick() {
   server_.tick();
-  health_ = monitor_.collect(counts());
+  monitor_.collect(counts(), health_);
   if (config_.health.publish) broadcast(write_health_now());
-  const std::string path = metrics_path(config_.health.metrics_file);
-  if (!path.empty() && !replace_file(path, to_prometheus(message_.session, health_)))
-    monitor_.metrics_failed();
+  write_prometheus(message_.session, health_, metrics_);
+  if (!metrics_file_.write(metrics_)) monitor_.metrics_failed();
 }
 
 }  // namespace lilo

@@ -3,6 +3,7 @@
 #include "config/config.hpp"
 #include "daemon/engine.hpp"
 #include "daemon/health_monitor.hpp"
+#include "daemon/metrics_file.hpp"
 #include "daemon/pose_message.hpp"
 #include "daemon/pose_record.hpp"
 #include "daemon/saver.hpp"
@@ -19,7 +20,7 @@
 namespace lilo {
 
 /// Everything the daemon sends: poses and health, to sinks, subscribers and whoever asks. Owns the
-/// session. One thread; no allocation for a pose.
+/// session. One thread; once warm it allocates for what is asked of it alone.
 class Publisher {
  public:
   /// Throws std::runtime_error when a socket cannot be had.
@@ -62,6 +63,8 @@ class Publisher {
   JsonWriter pose_json_, health_json_;
   std::string_view last_pose_;
   Health health_;
+  ReplacedFile metrics_file_;
+  std::string metrics_;
   std::uint64_t poses_sent_ = 0, poses_not_sent_ = 0;
   Sinks sinks_;
   Server server_;

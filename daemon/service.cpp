@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <iterator>
 #include <sstream>
 #include <unistd.h>
 #include <utility>
@@ -34,14 +35,19 @@ void log_report(const RealtimeReport& report) {
   }
 }
 
-std::string in_words(const Health& h) {
+// In place of what `out` held, whose memory it keeps.
+void in_words(const Health& h, std::string& out) {
+  out.clear();
   if (h.calibration_progress < 1.0) {
-    return fmt::format("waiting for the calibration in the sensor's packets, {:.0f} %",
-                       100.0 * h.calibration_progress);
+    fmt::format_to(std::back_inserter(out),
+                   "waiting for the calibration in the sensor's packets, {:.0f} %",
+                   100.0 * h.calibration_progress);
+  } else if (h.rate_hz < 0.5) {
+    out += h.driver.data_packets == 0 ? "waiting for the sensor" : "no scans";
+  } else {
+    fmt::format_to(std::back_inserter(out), "{} {:.0f} Hz, packets lost {}, scans dropped {}",
+                   to_string(h.status), h.rate_hz, h.driver.packets_lost, h.scans_dropped);
   }
-  if (h.rate_hz < 0.5) return h.driver.data_packets == 0 ? "waiting for the sensor" : "no scans";
-  return fmt::format("{} {:.0f} Hz, packets lost {}, scans dropped {}", to_string(h.status),
-                     h.rate_hz, h.driver.packets_lost, h.scans_dropped);
 }
 
 }  // namespace
@@ -150,13 +156,13 @@ void Service::await_second() {
 void Service::supervise() {
   publisher_.tick();
   const Health& h = publisher_.last_health();
-  const std::string words = in_words(h);
-  if (words != status_) {
-    notify::status(words);
-    spdlog::debug("{}", words);
+  in_words(h, new_status_);
+  if (new_status_ != status_) {
+    notify::status(new_status_);
+    spdlog::debug("{}", new_status_);
   }
-  if (h.calibration_progress < 1.0) spdlog::info("{}", words);
-  status_ = words;
+  if (h.calibration_progress < 1.0) spdlog::info("{}", new_status_);
+  std::swap(status_, new_status_);
 
   const std::uint64_t problems = h.driver.packets_lost + h.driver.malformed_packets +
                                  h.source.kernel_dropped + h.scans_dropped + h.poses_not_sent +

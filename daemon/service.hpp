@@ -45,7 +45,7 @@ class Service {
   Publisher publisher_;
   boost::asio::posix::stream_descriptor report_ready_;
 
-  std::string status_;
+  std::string status_, new_status_;
   std::uint64_t processed_at_last_look_ = 0;
   std::uint64_t problems_logged_ = 0;
   LineBudget problem_lines_{1, 10'000'000'000};  // they are totals: one line says all since

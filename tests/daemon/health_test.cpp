@@ -74,7 +74,9 @@ TEST(Health, ComplaintsAreEmptyWhenAllIsWell) {
 // promtool's rules: HELP and TYPE before the samples, each metric once, counters end in _total,
 // values are numbers.
 TEST(Prometheus, FollowsTheTextFormat) {
-  std::istringstream lines(to_prometheus("0123456789abcdef", a_health()));
+  std::string text = "what was there before";
+  write_prometheus("0123456789abcdef", a_health(), text);
+  std::istringstream lines(text);
   const std::regex sample(R"(([a-z_]+)(\{[a-z]+="[^"\n]*"\})? (-?[0-9.e+-]+))");
   std::set<std::string> declared;
   std::string current, type;
