@@ -17,7 +17,8 @@ namespace {
 namespace ip = boost::asio::ip;
 using boost::system::error_code;
 
-constexpr int kAnswersPerSecond = 200;
+constexpr int kAnswersPerSecond = 200, kAnswersToUnprovenPerSecond = 50;
+constexpr const char* kSoftware = "lilod " LILO_VERSION;
 constexpr double kShortestLeaseS = 1.0;
 
 std::int64_t to_ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
@@ -31,7 +32,8 @@ Server::Server(boost::asio::io_context& io, const SubscribeConfig& config,
       publish_(publish),
       actions_(std::move(actions)),
       clients_(static_cast<std::size_t>(config.max_clients)),
-      answers_left_(kAnswersPerSecond) {
+      answers_left_(kAnswersPerSecond),
+      answers_to_unproven_left_(kAnswersToUnprovenPerSecond) {
   if (config.port == 0) return;
   const Endpoint local(ip::make_address_v4(config.bind_address), config.port);
   error_code error;
@@ -63,28 +65,36 @@ bool Server::is_known(const Endpoint& from) const {
 
 // That the sender receives what goes to its address: a packet from the loopback network cannot come
 // from outside, and others have sent back a token.
-bool Server::is_proven(const Request& request) const {
+bool Server::is_proven(const ParsedRequest& parsed) const {
   if (from_.address().is_loopback()) return true;
-  return tokens_.accept(request.token, from_.address().to_v4().to_uint(), from_.port(),
+  if (!parsed.request) return false;
+  return tokens_.accept(parsed.request->token, from_.address().to_v4().to_uint(), from_.port(),
                         monotonic_ns());
 }
 
 void Server::handle(std::string_view datagram) {
-  if (!is_known(from_) || answers_left_ <= 0) {
+  if (!is_known(from_)) {
     ++requests_refused_;
     return;
   }
+  request_bytes_ = datagram.size();
   const ParsedRequest parsed = parse_request(datagram);
-  if (!parsed.request) {
+  if (!is_proven(parsed)) {
+    answer_unproven(parsed.request ? write_token() : write_error(parsed.error));
+  } else if (!parsed.request) {
     ++requests_refused_;
-    if (from_.address().is_loopback() || clients_.contains(from_)) say_error(parsed.error);
-    return;
+    say_error(parsed.error);
+  } else if (may_be_served(*parsed.request)) {
+    serve(*parsed.request);
+  } else {
+    ++requests_refused_;
   }
-  if (!is_proven(*parsed.request)) {
-    say_hello(0.0, true);
-    return;
-  }
-  serve(*parsed.request);
+}
+
+// Subscribers renew even in a second whose answers others have used up.
+bool Server::may_be_served(const Request& request) const {
+  return answers_left_ > 0 ||
+         (request.kind == RequestKind::subscribe && clients_.contains(from_));
 }
 
 void Server::serve(const Request& request) {
@@ -93,7 +103,7 @@ void Server::serve(const Request& request) {
       const double ttl_s = std::clamp(request.ttl_s.value_or(config_.lease_s), kShortestLeaseS,
                                       std::max(kShortestLeaseS, config_.lease_s));
       if (clients_.renew(from_, monotonic_ns() + to_ns(ttl_s))) {
-        say_hello(ttl_s, false);
+        say_hello(ttl_s);
       } else {
         say_error("too many clients");
       }
@@ -101,7 +111,7 @@ void Server::serve(const Request& request) {
     }
     case RequestKind::unsubscribe:
       clients_.remove(from_);
-      say_hello(0.0, false);
+      say_hello(0.0);
       return;
     case RequestKind::query:
       answer_query(request.query);
@@ -140,7 +150,7 @@ void Server::say_saved(const SaveResult& result, const Endpoint& to) {
 
 void Server::answer_query(const std::string& query) {
   if (query == "hello") {
-    say_hello(0.0, false);
+    say_hello(0.0);
   } else if (query == "health") {
     answer(actions_.health());
   } else if (query == "pose") {
@@ -162,33 +172,53 @@ void Server::begin(JsonWriter& out) {
   out.text("session", actions_.session());
 }
 
-void Server::say_hello(double ttl_s, bool with_token) {
+void Server::say_hello(double ttl_s) {
   begin(json_);
   json_.begin_object("hello");
-  json_.text("software", "lilod " LILO_VERSION);
+  json_.text("software", kSoftware);
   json_.number("ttl_s", ttl_s, 3);
-  if (with_token) {
-    json_.text("token",
-               tokens_.make(from_.address().to_v4().to_uint(), from_.port(), monotonic_ns()));
-  } else {
-    json_.text("frame_id", publish_.frame_id);
-    json_.text("child_frame_id", publish_.child_frame_id);
-  }
+  json_.text("frame_id", publish_.frame_id);
+  json_.text("child_frame_id", publish_.child_frame_id);
   json_.end_object();
   answer(json_.finish());
 }
 
-void Server::say_error(std::string_view why, const Endpoint& to) {
+void Server::say_error(std::string_view why, const Endpoint& to) { answer(write_error(why), to); }
+
+std::string_view Server::write_token() {
+  begin(json_);
+  json_.begin_object("hello");
+  json_.text("software", kSoftware);
+  json_.number("ttl_s", 0.0, 3);
+  json_.text("token",
+             tokens_.make(from_.address().to_v4().to_uint(), from_.port(), monotonic_ns()));
+  json_.end_object();
+  return json_.finish();
+}
+
+std::string_view Server::write_error(std::string_view why) {
   begin(json_);
   json_.begin_object("error");
   json_.text("reason", why);
   json_.end_object();
-  answer(json_.finish(), to);
+  return json_.finish();
 }
 
 void Server::answer(std::string_view datagram, const Endpoint& to) {
+  if (answers_left_ <= 0) return;
   --answers_left_;
   send_to(datagram, to);
+}
+
+// Whoever forged the sender gains nothing: what reaches the third party is no longer than what was
+// spent on it.
+void Server::answer_unproven(std::string_view datagram) {
+  if (answers_to_unproven_left_ <= 0 || datagram.size() > request_bytes_) {
+    ++requests_refused_;
+    return;
+  }
+  --answers_to_unproven_left_;
+  send_to(datagram, from_);
 }
 
 void Server::send_to(std::string_view datagram, const Endpoint& to) {
@@ -204,6 +234,7 @@ void Server::send(std::string_view datagram) {
 void Server::tick() {
   clients_.expire(monotonic_ns());
   answers_left_ = kAnswersPerSecond;
+  answers_to_unproven_left_ = kAnswersToUnprovenPerSecond;
 }
 
 }  // namespace lilo

@@ -32,8 +32,9 @@ struct ServerActions {
 /// The side of the protocol that listens: subscriptions, queries, resets, saving. One thread.
 ///
 /// Nobody can turn it against a third party: it answers loopback, and addresses of the allow-list;
-/// those first have to send back a token that only their real owner received. The clients, and the
-/// answers in a second, are bounded.
+/// those first have to send back a token that only their real owner received, and until then get no
+/// more bytes than they sent. The clients, and the answers in a second, are bounded; who has shown
+/// no token cannot use up the answers of those who have, and nobody the leases of subscribers.
 class Server {
  public:
   /// Does nothing when config.port is 0. Throws std::runtime_error when it cannot be bound.
@@ -60,13 +61,17 @@ class Server {
   void answer_query(const std::string& query);
   void say_saved(const SaveResult& result, const Endpoint& to);
   [[nodiscard]] bool is_known(const Endpoint& from) const;
-  [[nodiscard]] bool is_proven(const Request& request) const;
-  void say_hello(double ttl_s, bool with_token);
+  [[nodiscard]] bool is_proven(const ParsedRequest& parsed) const;
+  [[nodiscard]] bool may_be_served(const Request& request) const;
+  void say_hello(double ttl_s);
   void say_error(std::string_view why) { say_error(why, from_); }
   void say_error(std::string_view why, const Endpoint& to);
+  std::string_view write_token();
+  std::string_view write_error(std::string_view why);
   void begin(JsonWriter& out);
   void answer(std::string_view datagram) { answer(datagram, from_); }
   void answer(std::string_view datagram, const Endpoint& to);
+  void answer_unproven(std::string_view datagram);
   void send_to(std::string_view datagram, const Endpoint& to);
 
   boost::asio::ip::udp::socket socket_;
@@ -78,7 +83,8 @@ class Server {
   Endpoint from_;
   std::array<char, kMaxRequestBytes + 1> buffer_{};  // one more byte tells an oversized request
   JsonWriter json_;
-  int answers_left_ = 0;
+  std::size_t request_bytes_ = 0;
+  int answers_left_ = 0, answers_to_unproven_left_ = 0;  // this second
   std::uint64_t requests_refused_ = 0, send_errors_ = 0;
 };
 

@@ -150,13 +150,15 @@ class Client {
 
   /// The body of any request of the protocol: request("\"reset\":{}").
   void request(const std::string& body) {
-    const std::string text =
-        '{' + body + (token_.empty() ? "" : ",\"token\":\"" + token_ + '"') + '}';
+    std::string text = '{' + body + (token_.empty() ? "" : ",\"token\":\"" + token_ + '"') + '}';
+    // Until we have shown a token, lilod's answer is no longer than what we send.
+    if (text.size() < kRequestBytes) text.resize(kRequestBytes, ' ');
     // A refusal means that nobody listens yet; the lease is asked for again.
     [[maybe_unused]] const ssize_t sent = send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
   }
 
  private:
+  static constexpr std::size_t kRequestBytes = 256;
   using Clock = std::chrono::steady_clock;
 
   void renew() {

@@ -26,7 +26,8 @@ class LiloClient:
         if self._token:
             request["token"] = self._token
         try:
-            self._socket.send(json.dumps(request).encode())
+            # Until we have shown a token, lilod's answer is no longer than what we send.
+            self._socket.send(json.dumps(request).encode().ljust(256))
         except OSError:
             pass  # nobody listens yet: the lease is asked for again
 
