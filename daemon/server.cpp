@@ -83,7 +83,7 @@ void Server::handle(std::string_view datagram) {
     answer_unproven(parsed.request ? write_token() : write_error(parsed.error));
   } else if (!parsed.request) {
     ++requests_refused_;
-    say_error(parsed.error);
+    if (answers_left_ > 0) say_error(parsed.error);
   } else if (may_be_served(*parsed.request)) {
     serve(*parsed.request);
   } else {
@@ -93,8 +93,7 @@ void Server::handle(std::string_view datagram) {
 
 // Subscribers renew even in a second whose answers others have used up.
 bool Server::may_be_served(const Request& request) const {
-  return answers_left_ > 0 ||
-         (request.kind == RequestKind::subscribe && clients_.contains(from_));
+  return answers_left_ > 0 || (request.kind == RequestKind::subscribe && clients_.contains(from_));
 }
 
 void Server::serve(const Request& request) {
@@ -103,7 +102,7 @@ void Server::serve(const Request& request) {
       const double ttl_s = std::clamp(request.ttl_s.value_or(config_.lease_s), kShortestLeaseS,
                                       std::max(kShortestLeaseS, config_.lease_s));
       if (clients_.renew(from_, monotonic_ns() + to_ns(ttl_s))) {
-        say_hello(ttl_s);
+        if (answers_left_ > 0) say_hello(ttl_s);
       } else {
         say_error("too many clients");
       }
@@ -205,7 +204,6 @@ std::string_view Server::write_error(std::string_view why) {
 }
 
 void Server::answer(std::string_view datagram, const Endpoint& to) {
-  if (answers_left_ <= 0) return;
   --answers_left_;
   send_to(datagram, to);
 }

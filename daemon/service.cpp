@@ -77,6 +77,7 @@ void Service::run() {
   await_second();
   const std::int64_t watchdog_us = notify::watchdog_interval_us();
   if (watchdog_us > 0) await_watchdog(watchdog_us / 2);
+  publisher_.tick();  // so that there is a health to be asked for
   notify::ready("waiting for the sensor");
   io_.run();
   notify::stopping();

@@ -43,6 +43,23 @@ TEST(Protocol, UnsubscribeAndQuery) {
   EXPECT_TRUE(ask(client, lilod, R"({"query":"health"})", "health").contains("health"));
 }
 
+// Others use up all of the answers; a lease of one second is renewed for three.
+TEST(Protocol, SubscribersRenewWhateverOthersAsk) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  UdpSocket client, crowd;
+  ask(client, lilod, R"({"subscribe":{"ttl_s":1}})", "hello");
+  for (int round = 0; round < 30; ++round) {
+    for (int k = 0; k < 250; ++k) crowd.send_to(lilod.server_port(), R"({"query":"hello"})");
+    client.send_to(lilod.server_port(), R"({"subscribe":{"ttl_s":1}})");
+    std::this_thread::sleep_for(milliseconds(100));
+  }
+  while (client.receive(milliseconds(0))) {
+  }
+  Sensor().turn(lilod, 3.0);
+  EXPECT_TRUE(next_of_kind(client, "pose"));
+}
+
 // A new session, seq from 0, and the first pose where the client said.
 TEST(Protocol, ResetStartsANewSessionAtTheGivenPose) {
   Lilod lilod;
