@@ -126,16 +126,27 @@ std::vector<Key> paper_keys() {
               "Width of the range image; the paper has 360, 720 and 1024."),
       integer("odometry.paper.interpolated_rows", LILO_MEMBER(odometry.paper.interpolated_rows), 0,
               128, "", kRestart,
-              "Height of the image after interpolation between beams; 0: one row a beam. The paper "
-              "has 32 for the VLP-16."),
+              "Height of the image that a sensor with fewer beams is interpolated to, 32 in the "
+              "paper; 0: one row a beam."),
       choice(
           "odometry.paper.ground_filter", LILO_MEMBER(odometry.paper.ground_filter),
-          {"sobel", "fourier"}, kRestart,
+          {"by_sensor", "sobel", "fourier"}, kRestart,
           "How ground is told from the rest: sobel, large steps from ring to ring; fourier, rows "
-          "that hardly vary along azimuth."),
+          "that hardly vary along azimuth; by_sensor, as in the paper: fourier up to 16 beams, "
+          "sobel "
+          "above."),
       choice("odometry.paper.group", LILO_MEMBER(odometry.paper.group), {"EG", "ES", "EGS"},
              kRestart,
              "The features that align a scan: edges with ground, with surfaces, or with both."),
+      choice("odometry.paper.deskew", LILO_MEMBER(odometry.paper.deskew),
+             {"none", "one_stage", "two_stage"}, kRestart,
+             "How the sensor's motion within a scan is taken out: not at all; by the predicted "
+             "motion; or again, by the motion found, before points enter the map. Scans that the "
+             "authors of a data set deskewed are left alone."),
+      boolean(
+          "odometry.paper.pixel_centres", LILO_MEMBER(odometry.paper.pixel_centres), kRestart,
+          "Rebuild points in the middle of their image column, as the paper prints; false: keep "
+          "the exact return of the pixel."),
       real("odometry.paper.sobel_edge_m", LILO_MEMBER(odometry.paper.sobel_edge_m), 0.05, 50.0, "m",
            kRestart, "Horizontal Sobel response (gain 8) above which a pixel is an edge."),
       real("odometry.paper.sobel_ground_m", LILO_MEMBER(odometry.paper.sobel_ground_m), 0.05, 50.0,
@@ -157,6 +168,15 @@ std::vector<Key> paper_keys() {
            kRestart, "Residuals beyond this weigh less."),
       integer("odometry.paper.max_iterations", LILO_MEMBER(odometry.paper.max_iterations), 1, 100,
               "", kRestart, "Gauss-Newton steps a scan, at most."),
+      real("odometry.paper.keyframe_m", LILO_MEMBER(odometry.paper.keyframe_m), 0.0, 10.0, "m",
+           kRestart,
+           "The map grows when the sensor has moved so far since it last grew; 0: every scan."),
+      angle("odometry.paper.keyframe_deg", LILO_MEMBER(odometry.paper.keyframe_rad), 0.0, 45.0,
+            kRestart, "The same for turning."),
+      real("odometry.paper.search_again", LILO_MEMBER(odometry.paper.search_again), 0.0, 1.0, "",
+           kRestart,
+           "Map points around a feature are sought anew once it has moved by this part of "
+           "neighbourhood_m. Larger is faster; 0: at every step."),
   };
 }
 

@@ -13,19 +13,32 @@ enum class Profile : std::uint8_t {
 
 /// How ground is told from the rest of the image.
 enum class GroundFilter : std::uint8_t {
-  sobel,    ///< Eq. 7: large vertical gradient
-  fourier,  ///< Eqs. 11-13: rows that hardly vary along azimuth
+  by_sensor,  ///< as the paper's Section 5 chose: Fourier up to 16 beams, Sobel above
+  sobel,      ///< Eq. 7: large vertical gradient
+  fourier,    ///< Eqs. 11-13: rows that hardly vary along azimuth
 };
 
 /// Which features align the scan: edges with ground, surfaces, or both.
 enum class FeatureGroup : std::uint8_t { EG, ES, EGS };
 
-/// The paper's choices, and ours where it is silent.
+/// What is done about the sensor's motion within a scan (Section 4, end).
+enum class Deskew : std::uint8_t {
+  none,       ///< all returns count as measured at the scan's end
+  one_stage,  ///< by the predicted motion; what was aligned enters the map
+  two_stage,  ///< F-LOAM, the paper: the map gets the scan deskewed by the motion that was found
+};
+
+/// The paper's choices, and ours where it is silent: thresholds, Huber's kernel, how often the map
+/// grows and how often correspondences are sought. core/README.md says what they are worth.
 struct PaperConfig {
-  int columns = 720;          ///< image width N: 360, 720 or 1024 in the paper
-  int interpolated_rows = 0;  ///< image height after interpolation between beams; 0: one per beam
-  GroundFilter ground_filter = GroundFilter::sobel;
+  int columns = 720;  ///< image width N: 360, 720 or 1024 in the paper
+  /// Image height that sensors with fewer beams are interpolated to: 16 beams to 32 rows in the
+  /// paper. 0: one row a beam.
+  int interpolated_rows = 32;
+  GroundFilter ground_filter = GroundFilter::by_sensor;
   FeatureGroup group = FeatureGroup::EGS;
+  Deskew deskew = Deskew::two_stage;
+  bool pixel_centres = false;  ///< Eqs. 14-16 to the letter; false: the exact return of the pixel
   double sobel_edge_m = 2.0;  ///< horizontal Sobel response (gain 8) above which a pixel is an edge
   double sobel_ground_m = 2.0;    ///< vertical Sobel response above which a pixel is ground
   bool drop_shadow_edges = true;  ///< keep the nearer side of a depth jump only; false: the print
@@ -36,6 +49,13 @@ struct PaperConfig {
   double map_radius_m = 100.0;    ///< the map is cropped to a box of this half-width
   double huber_m = 0.1;           ///< residuals beyond this weigh less
   int max_iterations = 8;         ///< Gauss-Newton steps
+  /// The maps grow when the sensor has moved or turned so far since they last did: a scan from the
+  /// same place would add cost and the noise of its pose, but no view.
+  double keyframe_m = 1.0;
+  double keyframe_rad = 2.0 * std::numbers::pi / 180.0;
+  /// A feature keeps its line or plane until it has moved by this part of the neighbourhood, over
+  /// which the neighbourhood hardly changes. 0: sought anew at every step.
+  double search_again = 0.15;
 };
 
 /// The default profile: features of the image plane on a map of Gaussian cells.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace lilo::paper {
 namespace {
@@ -26,9 +27,17 @@ Point between(const Point& a, const Point& b, float weight) {
   return p;
 }
 
+/// Eqs. 14-16: the point at its height, moved to the middle of its column.
+void move_to_centre(double azimuth_rad, float range_m, Point& p) {
+  const float flat_m = std::sqrt(std::max(0.0F, range_m * range_m - p.z * p.z));
+  p.x = flat_m * static_cast<float>(std::cos(azimuth_rad));
+  p.y = flat_m * static_cast<float>(std::sin(azimuth_rad));
+}
+
 }  // namespace
 
-Features reconstruct(const Scan& scan, const RangeImage& image, const cv::Mat1b& labels) {
+Features reconstruct(const Scan& scan, const RangeImage& image, const cv::Mat1b& labels,
+                     bool pixel_centres) {
   const auto duration_ns =
       static_cast<float>(std::max<std::int64_t>(scan.end_ns - scan.start_ns, 1));
   const float per_ns = 1.0F / duration_ns;
@@ -42,6 +51,9 @@ Features reconstruct(const Scan& scan, const RangeImage& image, const cv::Mat1b&
       if (pixel.second >= 0) {
         const Return& other = scan.returns[static_cast<std::size_t>(pixel.second)];
         p = between(p, to_point(other, per_ns), pixel.weight);
+      }
+      if (pixel_centres) {
+        move_to_centre(column_azimuth_rad(j, image.columns()), image.range_m(i, j), p);
       }
       const auto& cloud = label == Label::edge      ? features.edges
                           : label == Label::surface ? features.surfaces

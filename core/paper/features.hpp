@@ -15,23 +15,28 @@ namespace lilo::paper {
 using Point = pcl::PointXYZI;
 using Cloud = pcl::PointCloud<Point>;
 
-/// P_E, P_S and P_G of Eq. 20, each point in the sensor's frame of its own instant.
+/// P_E, P_S and P_G of Eq. 19, each point in the sensor's frame of its own instant.
 struct Features {
   Cloud::Ptr edges{new Cloud};
   Cloud::Ptr surfaces{new Cloud};
   Cloud::Ptr ground{new Cloud};
 };
 
-/// Eqs. 14-20. The paper rebuilds x and y from the column's centre and z from the image Pz; at
-/// 0.5 degrees a column is 17 cm wide at 20 m, so here the pixel's own return is taken. Pixels that
-/// interpolation made lie on the straight line between their two returns.
-Features reconstruct(const Scan& scan, const RangeImage& image, const cv::Mat1b& labels);
+/// Eqs. 14-19: a point a labelled pixel (Eq. 17: of filled pixels only).
+/// The paper rebuilds x and y from the column's centre (Eqs. 14-16) and takes z from the image Pz
+/// of Eq. 18; at 0.5 degrees a column is 17 cm wide at 20 m, so here the pixel's own return is
+/// taken, unless `pixel_centres` asks for the print. What Eqs. 14 and 15 write ||I - z|| is read as
+/// sqrt(I^2 - z^2), the distance in the horizontal plane. Pixels that interpolation made lie on the
+/// straight line between their two returns.
+Features reconstruct(const Scan& scan, const RangeImage& image, const cv::Mat1b& labels,
+                     bool pixel_centres = false);
 
 /// Section 4: PCL voxel grid, one centroid a voxel of `leaf_m`.
 Cloud::Ptr voxel_grid(const Cloud::Ptr& cloud, double leaf_m);
 
-/// Moves every point from the sensor's frame at its own instant to the frame at the end of the
-/// scan. `T_start_end`: the sensor's motion during the scan, at constant velocity (F-LOAM).
+/// Section 4, after F-LOAM: moves every point from the sensor's frame at its own instant to the
+/// frame at the end of the scan. `T_start_end`: the sensor's motion during the scan, at constant
+/// velocity. To 1/64 of the scan.
 void deskew(const Pose& T_start_end, const Cloud& raw, Cloud& deskewed);
 
 }  // namespace lilo::paper

@@ -15,10 +15,12 @@ class LocalMap {
   LocalMap(double voxel_m, double radius_m) : voxel_m_(voxel_m), radius_m_(radius_m) {}
 
   /// Adds points of the sensor's frame at `T_odom_sensor`, reduces, and removes what is farther
-  /// than the map's radius from the sensor along x, y or z.
+  /// than the map's radius from the sensor along x, y or z (Section 5: 100 m "in the x, y, z
+  /// axes").
   void update(const std::vector<const Cloud*>& clouds, const Pose& T_odom_sensor);
 
-  /// Map points within `radius_m` of `point`, unordered. The result lives until the next call.
+  /// Map points within `radius_m` of `point` (Section 4: 1.0 m), unordered. The result lives until
+  /// the next call.
   const std::vector<int>& neighbours(const Point& point, double radius_m) const;
 
   [[nodiscard]] const Cloud& cloud() const { return *cloud_; }

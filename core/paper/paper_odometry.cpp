@@ -8,15 +8,6 @@
 namespace lilo::paper {
 namespace {
 
-/// Rows that look above the horizon can hold no ground.
-int first_ground_row(const BeamTable& beams, int rows) {
-  int above = 0;
-  for (int ring = 0; ring < beams.ring_count; ++ring) {
-    if (beams.elevation_rad[static_cast<std::size_t>(ring)] >= 0.0F) ++above;
-  }
-  return above * std::max(1, rows / std::max(1, beams.ring_count));
-}
-
 Cloud::Ptr surfaces_of(const Features& features, FeatureGroup group) {
   Cloud::Ptr cloud(new Cloud);
   if (group != FeatureGroup::EG) *cloud += *features.surfaces;
@@ -56,15 +47,15 @@ PaperOdometry::PaperOdometry(const OdometryConfig& config)
       surface_map_(config.paper.surface_voxel_m, config.paper.map_radius_m) {}
 
 Estimate PaperOdometry::process(const Scan& scan, StageHook hook) {
-  const double duration_s = scan.motion_compensated ? 0.0 : seconds(scan.end_ns - scan.start_ns);
+  const bool rigid = scan.motion_compensated || config_.paper.deskew == Deskew::none;
+  const double duration_s = rigid ? 0.0 : seconds(scan.end_ns - scan.start_ns);
   const double dt_s = time_since(last_end_ns_, scan);
 
-  const RangeImage image = make_image(scan);
+  const RangeImage image = image_of(scan, config_);
   hook(Stage::project);
-  const cv::Mat1b labels =
-      segment(image.range_m, config_.paper, first_ground_row(scan.beams, image.rows()));
+  const cv::Mat1b labels = segment(image.range_m, config_.paper, scan.beams);
   hook(Stage::filter);
-  const Reduced reduced = reduce(reconstruct(scan, image, labels));
+  const Reduced reduced = reduce(reconstruct(scan, image, labels, config_.paper.pixel_centres));
   hook(Stage::reconstruct);
   const Reduced predicted = deskew_all(reduced, twist_, duration_s);
   hook(Stage::deskew);
@@ -72,7 +63,8 @@ Estimate PaperOdometry::process(const Scan& scan, StageHook hook) {
   hook(Stage::align);
   advance(alignment, dt_s);
   // F-LOAM's second stage: the points enter the map deskewed by the motion that was found.
-  update_maps(deskew_all(reduced, twist_, duration_s));
+  update_maps(config_.paper.deskew == Deskew::two_stage ? deskew_all(reduced, twist_, duration_s)
+                                                        : predicted);
   hook(Stage::update_map);
 
   last_end_ns_ = scan.end_ns;
@@ -90,15 +82,6 @@ std::vector<Eigen::Vector3f> PaperOdometry::map_points() const {
     for (const Point& p : map->cloud()) points_m.emplace_back(p.getVector3fMap());
   }
   return points_m;
-}
-
-RangeImage PaperOdometry::make_image(const Scan& scan) const {
-  RangeImage image;
-  project(scan, config_.paper.columns, config_.min_range_m, config_.max_range_m, image);
-  if (config_.paper.interpolated_rows <= image.rows()) return image;
-  RangeImage taller;
-  interpolate_rows(image, config_.paper.interpolated_rows, taller);
-  return taller;
 }
 
 Reduced PaperOdometry::reduce(const Features& features) const {
@@ -128,13 +111,9 @@ void PaperOdometry::advance(const Alignment& alignment, double dt_s) {
 }
 
 void PaperOdometry::update_maps(const Reduced& scan) {
-  // The paper cleans its maps "as the robot translation increases": a scan from where the maps last
-  // grew would add cost and the noise of its pose, but no view.
-  constexpr double kKeyframe_m = 1.0;
-  constexpr double kKeyframe_rad = 0.035;
   const Pose since = T_odom_keyframe_.inverse() * T_odom_sensor_;
-  const bool near =
-      since.translation_m.norm() < kKeyframe_m && so3_log(since.rotation).norm() < kKeyframe_rad;
+  const bool near = since.translation_m.norm() < config_.paper.keyframe_m &&
+                    so3_log(since.rotation).norm() < config_.paper.keyframe_rad;
   if (motion_known() && near) return;
   T_odom_keyframe_ = T_odom_sensor_;
   edge_map_.update({scan.edges.get()}, T_odom_sensor_);

@@ -20,14 +20,14 @@ class PaperOdometry {
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
  private:
-  [[nodiscard]] RangeImage make_image(const Scan& scan) const;
   [[nodiscard]] Reduced reduce(const Features& features) const;
   [[nodiscard]] Alignment align_to_map(const Reduced& scan, double dt_s) const;
   void advance(const Alignment& alignment, double dt_s);
   /// False for the first scans, whose prediction knows nothing of a start in motion.
   [[nodiscard]] bool motion_known() const { return scan_count_ >= 3; }
-  /// Adds the scan to both maps when the sensor has moved 1 m or turned 2 degrees since the last
-  /// time (Section 4 is silent on how often).
+  /// Adds the scan to both maps when the sensor has moved or turned far enough since the last time
+  /// (keyframe_m, keyframe_rad): the paper cleans its maps "as the robot translation increases" and
+  /// is silent on how often they grow.
   void update_maps(const Reduced& scan);
   [[nodiscard]] Estimate estimate(const Scan& scan, const Alignment& alignment) const;
 

@@ -13,7 +13,7 @@ void reset(RangeImage& image, int rows, int columns) {
   image.pixels.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), Pixel{});
 }
 
-/// Eq. 5 with the azimuth of Eq. 16: the nearest column centre, wrapped.
+/// Eq. 5 as the inverse of Eq. 16: the nearest column centre, wrapped.
 int column_of(float azimuth_rad, int columns) {
   const float per_rad = static_cast<float>(columns) / (2.0F * std::numbers::pi_v<float>);
   const int j = static_cast<int>(std::lround((std::numbers::pi_v<float> - azimuth_rad) * per_rad));
@@ -23,6 +23,10 @@ int column_of(float azimuth_rad, int columns) {
 }  // namespace
 
 float range_of(const Return& r) { return std::sqrt(r.x_m * r.x_m + r.y_m * r.y_m + r.z_m * r.z_m); }
+
+double column_azimuth_rad(int column, int columns) {
+  return std::numbers::pi - 2.0 * std::numbers::pi * column / columns;
+}
 
 void project(const Scan& scan, int columns, double min_range_m, double max_range_m,
              RangeImage& image) {
@@ -64,6 +68,15 @@ void interpolate_rows(const RangeImage& image, int rows, RangeImage& taller) {
       }
     }
   }
+}
+
+RangeImage image_of(const Scan& scan, const OdometryConfig& config) {
+  RangeImage image;
+  project(scan, config.paper.columns, config.min_range_m, config.max_range_m, image);
+  if (config.paper.interpolated_rows <= image.rows()) return image;
+  RangeImage taller;
+  interpolate_rows(image, config.paper.interpolated_rows, taller);
+  return taller;
 }
 
 }  // namespace lilo::paper

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/odometry_config.hpp"
 #include "core/scan.hpp"
 
 #include <opencv2/core.hpp>
@@ -18,8 +19,10 @@ struct Pixel {
 };
 
 /// M x N image I of ranges (Eq. 3) and, beside it, the return behind every pixel, so that
-/// reconstruction gives back the exact point instead of the pixel's centre.
+/// reconstruction can give back the exact point instead of the pixel's centre.
 /// Row 0 is the highest beam; column j looks along azimuth pi - 2 pi j / N (Eq. 16).
+/// Eq. 3 prints r_(column, row); here (row, column), as OpenCV has it. The paper then normalises I
+/// to grey levels; here it stays in metres, so that no threshold depends on the farthest return.
 struct RangeImage {
   cv::Mat1f range_m;  ///< 0 where empty
   std::vector<Pixel> pixels;
@@ -34,19 +37,32 @@ struct RangeImage {
   }
 };
 
-/// Range of a return from the sensor's centre, Eq. 2 (the norm of the three coordinates).
+/// r of Eq. 2, the range of a return from the sensor's centre: the norm of the three coordinates of
+/// Eq. 1, where the print takes that of their sum.
 float range_of(const Return& r);
 
-/// Eqs. 2-5: one row a beam, `columns` over the full turn. Of several returns in one pixel the
-/// nearest wins: it is the one that hides the others. Returns nearer than `min_range_m` or farther
-/// than `max_range_m` are left out.
+/// theta of Eq. 2 in the middle of column j, which is omega of Eq. 16: pi - 2 pi j / N, in (-pi,
+/// pi].
+double column_azimuth_rad(int column, int columns);
+
+/// Eqs. 2-5: one row a beam, `columns` over the full turn.
+/// - Eq. 2: theta is the azimuth of the beam from the driver, atan2(y, x); the print says y / z.
+/// - Eq. 4: phi' counts beams, so i is the beam and Y_res is 1; asin(z / r) is not needed.
+/// - Eq. 5: the print leaves direction and rounding open. The direction is Eq. 16's, clockwise from
+///   behind; rounding is to the nearest column, as Eq. 18 has it.
+/// The paper is silent on several returns in one pixel: the nearest wins, it hides the others.
+/// Returns nearer than `min_range_m` or farther than `max_range_m` are left out.
 void project(const Scan& scan, int columns, double min_range_m, double max_range_m,
              RangeImage& image);
 
 /// Section 3.1, bilinear interpolation of a 16-beam image to `rows` rows (a multiple of its own).
-/// The paper interpolates everywhere; across a depth jump that invents points in free space, so
-/// here a row is filled only between two returns whose ranges differ by less than 20 % of the
-/// nearer one.
+/// Between rows only: the columns are dense already. The paper interpolates everywhere; across a
+/// depth jump that invents points in free space, so here a row is filled only between two returns
+/// whose ranges differ by less than 20 % of the nearer one.
 void interpolate_rows(const RangeImage& image, int rows, RangeImage& taller);
+
+/// The image of a scan as configured: projected, and interpolated where the sensor has fewer beams
+/// than `interpolated_rows`.
+RangeImage image_of(const Scan& scan, const OdometryConfig& config);
 
 }  // namespace lilo::paper

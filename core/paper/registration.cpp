@@ -66,15 +66,15 @@ using Matches = std::vector<Match>;
 struct Search {
   const LocalMap& map;
   double radius_m;
+  double stay_m;  ///< a feature that moved less keeps its match
   Primitive (*fit)(const Cloud&, const std::vector<int>&);
 };
 
-/// Seeks again when the feature has moved by a part of the neighbourhood since it was sought.
+/// Seeks again when the feature has moved since it was sought.
 void update(const Search& search, const Point& point, const Pose& T, Match& match) {
-  constexpr double kStay = 0.15;
   Point q = point;
   q.getVector3fMap() = (T * point.getVector3fMap().cast<double>()).cast<float>();
-  const auto stay_m = static_cast<float>(kStay * search.radius_m);
+  const auto stay_m = static_cast<float>(search.stay_m);
   if ((q.getVector3fMap() - match.sought_at).squaredNorm() < stay_m * stay_m) return;
   match.sought_at = q.getVector3fMap();
   match.primitive = search.fit(search.map.cloud(), search.map.neighbours(q, search.radius_m));
@@ -146,8 +146,9 @@ Alignment align(const Cloud& edges, const Cloud& surfaces, const LocalMap& edge_
   Alignment result;
   result.T_odom_sensor = guess;
   Pose& T = result.T_odom_sensor;
-  const Search lines{edge_map, search_m, fit_line};
-  const Search planes{surface_map, search_m, fit_plane};
+  const double stay_m = config.search_again * search_m;
+  const Search lines{edge_map, search_m, stay_m, fit_line};
+  const Search planes{surface_map, search_m, stay_m, fit_plane};
   Matches edge_matches(edges.size());
   Matches surface_matches(surfaces.size());
   while (result.iterations < config.max_iterations && !result.converged) {

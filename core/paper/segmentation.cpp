@@ -88,11 +88,26 @@ cv::Mat1b fourier_ground(const cv::Mat1f& range_m, int first_ground_row, double 
   return mask;
 }
 
-cv::Mat1b segment(const cv::Mat1f& range_m, const PaperConfig& config, int first_ground_row) {
-  cv::Mat1b ground = config.ground_filter == GroundFilter::sobel
+int first_ground_row(const BeamTable& beams, int rows) {
+  int above = 0;
+  for (int ring = 0; ring < beams.ring_count; ++ring) {
+    if (beams.elevation_rad[static_cast<std::size_t>(ring)] >= 0.0F) ++above;
+  }
+  return above * std::max(1, rows / std::max(1, beams.ring_count));
+}
+
+GroundFilter ground_filter_for(const PaperConfig& config, int beams) {
+  constexpr int kFewBeams = 16;
+  if (config.ground_filter != GroundFilter::by_sensor) return config.ground_filter;
+  return beams <= kFewBeams ? GroundFilter::fourier : GroundFilter::sobel;
+}
+
+cv::Mat1b segment(const cv::Mat1f& range_m, const PaperConfig& config, const BeamTable& beams) {
+  const int ground_row = first_ground_row(beams, range_m.rows);
+  cv::Mat1b ground = ground_filter_for(config, beams.ring_count) == GroundFilter::sobel
                          ? sobel_ground(range_m, config.sobel_ground_m)
-                         : fourier_ground(range_m, first_ground_row, config.fourier_ratio);
-  ground.rowRange(0, std::clamp(first_ground_row, 0, ground.rows)).setTo(0);
+                         : fourier_ground(range_m, ground_row, config.fourier_ratio);
+  ground.rowRange(0, std::clamp(ground_row, 0, ground.rows)).setTo(0);
   cv::Mat1b edge(horizontal_sobel(range_m) > config.sobel_edge_m);
   if (config.drop_shadow_edges) edge &= nearer_side(range_m);
   cv::Mat1b labels(range_m.size(), static_cast<uchar>(Label::surface));

@@ -167,7 +167,7 @@ void paper_fourier_mask(benchmark::State& state) {
 
 paper::Features paper_features(const Scan& scan) {
   const auto image = paper_image(scan);
-  return paper::reconstruct(scan, image, paper::segment(image.range_m, {}, image.rows() / 2));
+  return paper::reconstruct(scan, image, paper::segment(image.range_m, {}, scan.beams));
 }
 
 void paper_voxel_grid(benchmark::State& state) {
@@ -175,7 +175,7 @@ void paper_voxel_grid(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(paper::voxel_grid(features.surfaces, 0.8)->size());
 }
 
-// One step of Eq. 21: neighbours, lines and planes for all features, and the normal equation.
+// One step of Eq. 20: neighbours, lines and planes for all features, and the normal equation.
 void paper_correspondences(benchmark::State& state) {
   const auto features = paper_features(hall_scan(rings_of(state)));
   const auto edges = paper::voxel_grid(features.edges, 0.4);

@@ -123,14 +123,10 @@ TEST_P(ShippedFile, IsWhatPrintConfigPrints) {
   EXPECT_EQ(text.substr(heading_end + 2), print_config(load_config(path)));
 }
 
-// And in what the paper itself does otherwise with 16 beams: Fourier filter, 32 rows.
 TEST_P(ShippedFile, DiffersFromTheDefaultsInSensorAndSinkOnly) {
   const Config shipped = load_config(kFolder + '/' + GetParam());
   const auto keys = config_keys();
-  std::set<std::string> allowed = {"sensor.model", "publish.sinks"};
-  if (shipped.sensor.model == SensorModel::vlp16) {
-    allowed.insert({"odometry.paper.ground_filter", "odometry.paper.interpolated_rows"});
-  }
+  const std::set<std::string> allowed = {"sensor.model", "publish.sinks"};
   for (const Key* key : differing_keys(keys, shipped, {})) {
     EXPECT_TRUE(allowed.contains(key->path)) << key->path;
   }

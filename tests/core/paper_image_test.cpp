@@ -15,7 +15,7 @@ const BeamTable k16 = even_beams(16, -15.0, 15.0);
 const BeamTable k64 = even_beams(64, -24.8, 2.0);
 constexpr int kHorizon16 = 8;
 
-RangeImage image_of(const Scan& scan, int columns = 720) {
+RangeImage projected(const Scan& scan, int columns = 720) {
   RangeImage image;
   project(scan, columns, 0.5, 100.0, image);
   return image;
@@ -23,7 +23,7 @@ RangeImage image_of(const Scan& scan, int columns = 720) {
 
 TEST(Projection, EveryPixelHoldsItsNearestReturn) {
   const Scan scan = still_scan_of(test::yard(), k16, {});
-  const RangeImage image = image_of(scan);
+  const RangeImage image = projected(scan);
   cv::Mat1f nearest(16, 720, 0.0F);
   for (const Return& r : scan.returns) {
     // Eq. 16 read backwards, by table instead of by formula: the column whose centre is closest.
@@ -50,7 +50,7 @@ TEST(Projection, EveryPixelHoldsItsNearestReturn) {
 
 TEST(Projection, ReconstructionGivesBackTheReturn) {
   const Scan scan = still_scan_of(test::yard(), k64, {});
-  const RangeImage image = image_of(scan, 1024);
+  const RangeImage image = projected(scan, 1024);
   const cv::Mat1b all(image.range_m.size(), static_cast<uchar>(Label::surface));
   cv::Mat1b labels = all.clone();
   labels.setTo(static_cast<uchar>(Label::empty), image.range_m <= 0.0F);
@@ -72,13 +72,13 @@ TEST(Projection, LeavesOutWhatIsTooNearTooFarOrNoNumber) {
   Scan scan;
   scan.beams = k16;
   scan.returns = {{.x_m = 0.3F}, {.x_m = 150.0F}, {.x_m = std::nanf("")}};
-  EXPECT_EQ(cv::countNonZero(image_of(scan).range_m), 0);
+  EXPECT_EQ(cv::countNonZero(projected(scan).range_m), 0);
 }
 
 TEST(Interpolation, KeepsToTheSurfaceAndNeverBridgesAJump) {
   const test::Scene scene = test::yard();
   const Scan scan = still_scan_of(scene, k16, {});
-  const RangeImage image = image_of(scan);
+  const RangeImage image = projected(scan);
   RangeImage taller;
   interpolate_rows(image, 32, taller);
   ASSERT_EQ(taller.rows(), 32);
@@ -116,11 +116,11 @@ TEST(Sobel, HasGainEightOnARampAndWrapsAround) {
 
 TEST(Segmentation, IsAPartition) {
   const Scan scan = still_scan_of(test::yard(), k64, {});
-  const RangeImage image = image_of(scan);
+  const RangeImage image = projected(scan);
   for (const GroundFilter filter : {GroundFilter::sobel, GroundFilter::fourier}) {
     PaperConfig config;
     config.ground_filter = filter;
-    const cv::Mat1b labels = segment(image.range_m, config, 5);
+    const cv::Mat1b labels = segment(image.range_m, config, k64);
     const auto count = [&](Label l) { return cv::countNonZero(labels == static_cast<uchar>(l)); };
     const int filled = cv::countNonZero(image.range_m);
     EXPECT_EQ(count(Label::edge) + count(Label::surface) + count(Label::ground), filled);
@@ -135,7 +135,7 @@ TEST(Segmentation, IsAPartition) {
 TEST(Fourier, RemovesAFlatSiteSeenBySixteenBeams) {
   test::Scene flat;
   flat.planes = {{{0.0, 0.0, 1.0}, -1.5}};
-  const RangeImage image = image_of(still_scan_of(flat, k16, {}));
+  const RangeImage image = projected(still_scan_of(flat, k16, {}));
   const cv::Mat1b ground = fourier_ground(image.range_m, kHorizon16, 0.15);
   EXPECT_EQ(cv::countNonZero(ground), cv::countNonZero(image.range_m));
 }
@@ -144,7 +144,7 @@ TEST(Fourier, RemovesATiltedFlatSiteAsWell) {
   test::Scene flat;
   const Eigen::Vector3d up = Eigen::Vector3d(0.03, -0.02, 1.0).normalized();
   flat.planes = {{up, -1.5}};
-  const RangeImage image = image_of(still_scan_of(flat, k16, {}));
+  const RangeImage image = projected(still_scan_of(flat, k16, {}));
   const cv::Mat1b ground = fourier_ground(image.range_m.rowRange(10, 16), 0, 0.15);
   EXPECT_GT(cv::countNonZero(ground), 6 * 720 * 99 / 100);
 }
@@ -152,7 +152,7 @@ TEST(Fourier, RemovesATiltedFlatSiteAsWell) {
 TEST(Fourier, KeepsAWall) {
   test::Scene scene;
   scene.planes = {{{0.0, 0.0, 1.0}, -1.5}, {{-1.0, 0.0, 0.0}, -6.0}};
-  const RangeImage image = image_of(still_scan_of(scene, k16, {}));
+  const RangeImage image = projected(still_scan_of(scene, k16, {}));
   const cv::Mat1b ground = fourier_ground(image.range_m, kHorizon16, 0.15);
   int wall = 0, removed = 0;
   for (int i = kHorizon16; i < 16; ++i) {
@@ -171,11 +171,11 @@ TEST(Sobel, TheOutlineOfAPoleIsAnEdge) {
   test::Scene scene;
   scene.poles = {{8.0, 0.0, 0.15, 30.0}};
   scene.planes = {{{-1.0, 0.0, 0.0}, -25.0}};
-  const RangeImage image = image_of(test::still_scan_of(scene, k64, {}));
+  const RangeImage image = projected(test::still_scan_of(scene, k64, {}));
   for (const bool drop_shadow_edges : {true, false}) {
     PaperConfig config;
     config.drop_shadow_edges = drop_shadow_edges;
-    const cv::Mat1b labels = segment(image.range_m, config, 5);
+    const cv::Mat1b labels = segment(image.range_m, config, k64);
     const auto is_pole = [&](int i, int j) { return image.range_m(i, j) < 12.0F; };
     const auto is_edge = [&](int i, int j) {
       return labels(i, j) == static_cast<uchar>(Label::edge);

@@ -1,6 +1,4 @@
-#include "core/odometry.hpp"
 #include "core/paper/registration.hpp"
-#include "tests/core/analytic_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,13 +45,13 @@ TEST(Residuals, AnalyticJacobiansEqualNumericOnes) {
   }
 }
 
-TEST(Residuals, LineResidualIsTheDistanceOfEquation22) {
+TEST(Residuals, LineResidualIsTheDistanceOfEquation21) {
   std::mt19937 rng(8);
   const Pose T{so3_exp(random_vector(rng, 1.0)), random_vector(rng, 5.0)};
   const Eigen::Vector3d p = random_vector(rng, 5.0);
   const Primitive line{random_vector(rng, 5.0), random_vector(rng, 1.0).normalized(), true};
   const Eigen::Vector3d cross = (T * p - line.point).cross(line.axis);
-  const double f_E = (cross / cross.norm()).dot(cross);  // Eqs. 22 and 23 as printed
+  const double f_E = (cross / cross.norm()).dot(cross);  // Eqs. 21 and 22 as printed
   EXPECT_NEAR(line_residual(T, p, line).value.norm(), f_E, 1e-12);
 }
 
@@ -83,107 +81,52 @@ TEST(Fits, FindTheLineAndThePlaneTheirPointsCameFrom) {
   EXPECT_FALSE(fit_plane(line, {0, 1, 2, 3}).valid);  // too few
 }
 
-const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
+/// Three walls at right angles, none touching another, and three straight edges, in the frame whose
+/// pose in the map is `X`.
+struct Corner {
+  LocalMap edges{0.1, 1000.0}, surfaces{0.1, 1000.0};
+  Cloud edge_features, surface_features;
 
-OdometryConfig config_16() {
-  OdometryConfig config;
-  config.profile = Profile::paper;
-  config.paper.interpolated_rows = 32;
-  config.paper.ground_filter = GroundFilter::fourier;
-  return config;
-}
-
-Scan second_scan(const test::Scene& scene, const Pose& T) {
-  Scan scan = test::still_scan_of(scene, k16, T);
-  scan.index = 1;
-  scan.motion_compensated = true;
-  scan.start_ns += 100'000'000;
-  scan.end_ns += 100'000'000;
-  return scan;
-}
-
-TEST(PaperOdometry, RecoversAKnownStepBetweenTwoScans) {
-  const Pose step{so3_exp({0.01, -0.015, 0.05}), {0.4, -0.1, 0.05}};
-  Odometry odometry(config_16());
-  odometry.process(test::still_scan_of(test::yard(), k16, {}));
-  const Estimate e = odometry.process(second_scan(test::yard(), step));
-  const Pose error = step.inverse() * e.T_odom_sensor;
-  EXPECT_LT(error.translation_m.norm(), 0.02);
-  EXPECT_LT(so3_log(error.rotation).norm(), 0.002);
-}
-
-/// The yard as seen by a world whose axes are turned by `yaw_rad` about z.
-test::Scene turned(test::Scene scene, double yaw_rad) {
-  const Eigen::Quaterniond R = so3_exp({0.0, 0.0, yaw_rad});
-  for (test::Plane& plane : scene.planes) plane.normal = R * plane.normal;
-  for (test::Pole& pole : scene.poles) {
-    const Eigen::Vector3d at = R * Eigen::Vector3d(pole.x_m, pole.y_m, 0.0);
-    pole.x_m = at.x();
-    pole.y_m = at.y();
+  explicit Corner(const Pose& X) {
+    Cloud lines, walls;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3f n = Eigen::Vector3f::Unit(axis),
+                            u = Eigen::Vector3f::Unit((axis + 1) % 3),
+                            v = Eigen::Vector3f::Unit((axis + 2) % 3);
+      for (int a = 0; a < 24; ++a) {
+        add(lines, 5.0F * (u - v) + 0.25F * static_cast<float>(a) * n);
+        add(edge_features, 5.0F * (u - v) + (0.1F + 0.2F * static_cast<float>(a)) * n);
+        for (int b = 0; b < 24; ++b) {
+          const Eigen::Vector3f on_wall =
+              7.0F * n + 0.25F * (static_cast<float>(a) * u + static_cast<float>(b) * v);
+          add(walls, on_wall);
+          if (a % 3 == 1 && b % 3 == 1) add(surface_features, on_wall + 0.1F * u);
+        }
+      }
+    }
+    edges.update({&lines}, X);
+    surfaces.update({&walls}, X);
   }
-  return scene;
-}
-
-TEST(PaperOdometry, RotatingTheProblemRotatesTheAnswer) {
-  const Pose step{so3_exp({0.01, -0.015, 0.05}), {0.4, -0.1, 0.05}};
-  for (const double yaw_rad : {0.0, 0.7, -2.1}) {
-    const Pose turn{so3_exp({0.0, 0.0, yaw_rad}), Eigen::Vector3d::Zero()};
-    const Pose expected = turn * step * turn.inverse();
-    const test::Scene scene = turned(test::yard(), yaw_rad);
-    Odometry odometry(config_16());
-    odometry.process(test::still_scan_of(scene, k16, {}));
-    const Pose found = odometry.process(second_scan(scene, expected)).T_odom_sensor;
-    const Pose error = expected.inverse() * found;
-    EXPECT_LT(error.translation_m.norm(), 0.03) << yaw_rad;
-    EXPECT_LT(so3_log(error.rotation).norm(), 0.003) << yaw_rad;
+  static void add(Cloud& cloud, const Eigen::Vector3f& at) {
+    cloud.push_back({});
+    cloud.back().getVector3fMap() = at;
   }
-}
+};
 
-/// Error of the last pose after two seconds of speeding up to `speed_mps` and turning.
-double final_error_m(double speed_mps, bool deskew) {
-  const auto pose_at = [&](double t_s) {
-    const double x_m = 0.25 * speed_mps * t_s * t_s;
-    return Pose{so3_exp({0.0, 0.0, 0.05 * t_s * t_s}), {x_m - 8.0, 0.1 * x_m, 0.0}};
-  };
-  Odometry odometry(config_16());
-  Pose T_world_first;
-  Pose error;
-  for (std::uint64_t k = 0; k < 20; ++k) {
-    const double start_s = 0.1 * static_cast<double>(k);
-    Scan scan = test::scan_of(
-        test::yard(), k16, 1800, [&](double s) { return pose_at(start_s + 0.1 * s); }, k);
-    scan.motion_compensated = !deskew;
-    const Estimate e = odometry.process(scan);
-    const Pose truth = pose_at(start_s + 0.1);
-    if (k == 0) T_world_first = truth;
-    error = truth.inverse() * T_world_first * e.T_odom_sensor;
+TEST(Alignment, MovingTheWholeProblemMovesTheAnswer) {
+  std::mt19937 rng(11);
+  const Pose off{so3_exp({0.01, 0.02, -0.015}), {0.1, -0.08, 0.05}};
+  for (int k = 0; k < 8; ++k) {
+    const Pose X{so3_exp(random_vector(rng, 2.0)), random_vector(rng, 20.0)};
+    const Corner corner(X);
+    const Alignment found = align(corner.edge_features, corner.surface_features, corner.edges,
+                                  corner.surfaces, X * off, 1.0, {});
+    EXPECT_TRUE(found.converged);
+    EXPECT_GT(found.correspondences, 200);
+    const Pose error = X.inverse() * found.T_odom_sensor;
+    EXPECT_LT(error.translation_m.norm(), 1e-3) << k;
+    EXPECT_LT(so3_log(error.rotation).norm(), 1e-4) << k;
   }
-  return error.translation_m.norm();
-}
-
-TEST(PaperOdometry, DeskewingAMovingSensorIsWorthIt) {
-  const double with = final_error_m(10.0, true);
-  EXPECT_LT(with, 0.5);  // 10 m driven, at 1 m a scan in the end
-  EXPECT_LT(with, 0.5 * final_error_m(10.0, false));
-}
-
-TEST(PaperOdometry, AnEmptyScanIsReportedAsLostAndDoesNotMoveThePose) {
-  Odometry odometry(config_16());
-  odometry.process(test::still_scan_of(test::yard(), k16, {}));
-  Scan empty;
-  empty.index = 1;
-  empty.start_ns = 1'100'000'000;
-  empty.end_ns = 1'200'000'000;
-  empty.beams = k16;
-  const Estimate e = odometry.process(empty);
-  EXPECT_EQ(e.status, TrackingStatus::lost);
-  EXPECT_NEAR(e.T_odom_sensor.translation_m.norm(), 0.0, 1e-9);
-}
-
-TEST(PaperOdometry, AScanWithoutBeamsIsNoReasonToThrow) {
-  Odometry odometry(config_16());
-  EXPECT_NO_THROW(odometry.process(Scan{}));
-  EXPECT_NO_THROW(odometry.process(Scan{}));
 }
 
 }  // namespace

@@ -54,13 +54,27 @@ TEST_P(Worlds, DriveIsClearAndOnTheGround) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Worlds,
-                         testing::Combine(testing::Values("street", "park", "country", "highway",
-                                                          "field", "corridor"),
+                         testing::Combine(testing::Values("street", "park", "loop", "country",
+                                                          "highway", "field", "corridor"),
                                           testing::Values(2U)),
                          [](const auto& test_case) {
                            return std::get<0>(test_case.param) +
                                   std::to_string(std::get<1>(test_case.param));
                          });
+
+// Closure tables need a drive that ends where it began, and heads as it did then.
+TEST(World, LoopCloses) {
+  const World world = build_world("loop", 3, 160.0);
+  const RoutePoint begin = world.route.at(0.0), end = world.route.at(world.route.end_m());
+  EXPECT_NEAR(std::hypot(end.x - begin.x, end.y - begin.y), 0.0, 1e-6);
+  EXPECT_NEAR(end.yaw_rad - begin.yaw_rad, 2.0 * std::numbers::pi, 1e-9);
+  const MotionOptions motion{.speed_mps = 2.0, .duration_s = 80.0, .seed = 3};
+  const Drive drive(motion, world.vehicle, world.route);
+  const SensorPath path(motion, world.vehicle, world.route, drive, world.scene.terrain);
+  const Vec3 gap = path.at(80.0).translation_m - path.at(0.0).translation_m;
+  EXPECT_LT(gap.norm(), 0.01 * world.route.end_m());
+  EXPECT_GT(drive.arc_m(80.0), 0.98 * world.route.end_m());
+}
 
 TEST(World, UnknownNameIsRefused) {
   EXPECT_THROW(build_world("moon", 1, 100.0), std::invalid_argument);

@@ -14,7 +14,7 @@ namespace {
 
 CellResult some_result(const std::string& set) {
   CellResult result{.cell = chosen_cell(set, 16), .beams = 16};
-  result.cell.deskew = false;
+  result.cell.deskew = Deskew::one_stage;
   result.path_m = 82.7;
   result.ate_m = 0.125;
   result.end_z_m = -1.5;

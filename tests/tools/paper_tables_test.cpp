@@ -40,11 +40,11 @@ TEST(Box, WhiskersEndAtTheLastSampleWithinOneAndAHalfBoxes) {
 
 TEST(Cells, AreTheGridAndOneChangeEach) {
   const auto hdl = cells_of("a", 64, false);
-  EXPECT_EQ(hdl.size(), 11U);  // 9 + Fourier + no deskewing
+  EXPECT_EQ(hdl.size(), 14U);  // 9 + Fourier + one stage + no deskewing + centres + shadows
   const auto kitti = cells_of("a", 64, true);
-  EXPECT_EQ(kitti.size(), 10U);
+  EXPECT_EQ(kitti.size(), 12U);
   const auto vlp = cells_of("a", 16, false);
-  EXPECT_EQ(vlp.size(), 12U);  // 9 + Sobel + no interpolation + no deskewing
+  EXPECT_EQ(vlp.size(), 15U);  // and no interpolation
   for (const auto& cells : {hdl, kitti, vlp}) {
     std::set<std::string> stems;
     for (const Cell& cell : cells) stems.insert(file_stem(cell));
@@ -136,7 +136,7 @@ TEST(Boxes, GoOverTheSetsWithAsManyRows) {
   }
   results.push_back(result_of(chosen_cell("vlp", 16), 16, 9.0, 9.0, 9.0));
   Cell rigid = chosen_cell("set", 64);
-  rigid.deskew = false;  // not part of the grid
+  rigid.deskew = Deskew::none;  // not part of the grid
   results.push_back(result_of(rigid, 64, 100.0, 100.0, 100.0));
   const CsvTable table = boxes(results);
   ASSERT_EQ(table.rows.size(), 6U);  // one place of the grid, three measures, two heights
@@ -154,7 +154,7 @@ TEST(Boxes, GoOverTheSetsWithAsManyRows) {
 
 TEST(Choices, SayWhatWasChanged) {
   Cell cell = chosen_cell("vlp", 16);
-  cell.deskew = false;
+  cell.deskew = Deskew::none;
   cell.rows = 16;
   const CsvTable table = table_of_choices(
       {result_of(chosen_cell("vlp", 16), 16, 1, 1, 1), result_of(cell, 16, 1, 1, 1)});

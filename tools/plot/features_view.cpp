@@ -51,19 +51,8 @@ struct Segmented {
 
 /// As the odometry does it: Section 3 of the paper.
 Segmented segmented(const Scan& scan, const OdometryConfig& config) {
-  Segmented result;
-  paper::project(scan, config.paper.columns, config.min_range_m, config.max_range_m, result.image);
-  if (config.paper.interpolated_rows > result.image.rows()) {
-    paper::RangeImage taller;
-    paper::interpolate_rows(result.image, config.paper.interpolated_rows, taller);
-    result.image = std::move(taller);
-  }
-  const int rings = std::max(1, scan.beams.ring_count);
-  const auto above = static_cast<int>(
-      std::count_if(scan.beams.elevation_rad.begin(), scan.beams.elevation_rad.begin() + rings,
-                    [](float elevation_rad) { return elevation_rad >= 0.0F; }));
-  result.labels = paper::segment(result.image.range_m, config.paper,
-                                 above * std::max(1, result.image.rows() / rings));
+  Segmented result{.image = paper::image_of(scan, config)};
+  result.labels = paper::segment(result.image.range_m, config.paper, scan.beams);
   return result;
 }
 
@@ -201,7 +190,8 @@ Canvas draw_features(const Scan& scan, const OdometryConfig& config, const std::
   draw_legend(canvas);
   draw_images(canvas, parts, row_height);
 
-  const paper::Features features = paper::reconstruct(scan, parts.image, parts.labels);
+  const paper::Features features =
+      paper::reconstruct(scan, parts.image, parts.labels, config.paper.pixel_centres);
   const double reach_m = reach_of(features);
   draw_view(canvas, {"from above, x up", std::numbers::pi / 2.0, kSide, top, reach_m}, features);
   draw_view(canvas,

@@ -42,6 +42,8 @@ World build_world(const std::string& name, std::uint64_t seed, double length_m);
 
 World build_street(std::uint64_t seed, double length_m);
 World build_park(std::uint64_t seed, double length_m);
+/// Always 139 m long: the sensor stops where it began.
+World build_loop(std::uint64_t seed, double length_m);
 World build_highway(std::uint64_t seed, double length_m);
 World build_country(std::uint64_t seed, double length_m);
 World build_field(std::uint64_t seed, double length_m);

@@ -37,14 +37,9 @@ void add_walkers(World& world, Random& random, double length_m) {
                               .escort = true});
 }
 
-}  // namespace
-
-World build_park(std::uint64_t seed, double length_m) {
-  Random random(seed, 2);
-  constexpr double kLead_m = 30.0;
-  auto segments = winding(random, length_m + kLead_m + 30.0, 8.0, 22.0, 1.0 / 12.0);
-  segments.insert(segments.begin(), {kLead_m, 0.0, 0.0});
-  World world{Route(segments, kLead_m), {}, {}, {}};
+/// A park around a path.
+World planted(const Route& route, Random& random, std::uint64_t seed, double length_m) {
+  World world{route, {}, {}, {}};
   world.vehicle = {.wheelbase_m = 0.6,
                    .track_m = 0.5,
                    .sensor_height_m = 0.9,
@@ -83,6 +78,32 @@ World build_park(std::uint64_t seed, double length_m) {
   }
   add_walkers(world, random, length_m);
   return world;
+}
+
+}  // namespace
+
+World build_park(std::uint64_t seed, double length_m) {
+  Random random(seed, 2);
+  constexpr double kLead_m = 30.0;
+  auto segments = winding(random, length_m + kLead_m + 30.0, 8.0, 22.0, 1.0 / 12.0);
+  segments.insert(segments.begin(), {kLead_m, 0.0, 0.0});
+  return planted(Route(segments, kLead_m), random, seed, length_m);
+}
+
+World build_loop(std::uint64_t seed, double length_m) {
+  // Four equal quarters, each turning by 90 degrees, close whatever their shape. Lengths are whole
+  // steps of the route.
+  constexpr double kStraight_m = 12.0, kRamp_m = 4.0, kBend_m = 14.75;
+  constexpr double kCurvature = 0.5 * std::numbers::pi / (kRamp_m + kBend_m);
+  std::vector<RouteSegment> segments;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    segments.push_back({kStraight_m, 0.0, 0.0});
+    segments.push_back({kRamp_m, 0.0, kCurvature});
+    segments.push_back({kBend_m, kCurvature, kCurvature});
+    segments.push_back({kRamp_m, kCurvature, 0.0});
+  }
+  Random random(seed, 9);
+  return planted(Route(segments, 0.0), random, seed, length_m);
 }
 
 }  // namespace lilo::sim

@@ -14,8 +14,9 @@ struct NumberColumn {
   double CellResult::*value;
 };
 
-constexpr std::array kTextColumns = {"set",           "beams", "rows",   "columns",
-                                     "ground_filter", "group", "deskew", "segment_lengths_m"};
+constexpr std::array kTextColumns = {
+    "set",   "beams",  "rows",          "columns",           "ground_filter",
+    "group", "deskew", "pixel_centres", "drop_shadow_edges", "segment_lengths_m"};
 
 constexpr std::array<NumberColumn, 21> kNumberColumns = {{
     {"scans", &CellResult::scans},
@@ -68,8 +69,11 @@ CellResult parse(const std::vector<std::string>& row) {
       value_of(row[4], std::array{GroundFilter::sobel, GroundFilter::fourier});
   result.cell.group =
       value_of(row[5], std::array{FeatureGroup::EG, FeatureGroup::ES, FeatureGroup::EGS});
-  result.cell.deskew = row[6] == "yes";
-  result.segment_lengths_m = row[7];
+  result.cell.deskew =
+      value_of(row[6], std::array{Deskew::none, Deskew::one_stage, Deskew::two_stage});
+  result.cell.pixel_centres = row[7] == "yes";
+  result.cell.drop_shadow_edges = row[8] == "yes";
+  result.segment_lengths_m = row[9];
   for (std::size_t k = 0; k < kNumberColumns.size(); ++k) {
     result.*kNumberColumns[k].value = number_of(row[kTextColumns.size() + k]);
   }
@@ -96,7 +100,9 @@ std::vector<std::string> to_row(const CellResult& result) {
                                   fmt::format("{}", cell.columns),
                                   to_string(cell.ground_filter),
                                   to_string(cell.group),
-                                  cell.deskew ? "yes" : "no",
+                                  to_string(cell.deskew),
+                                  cell.pixel_centres ? "yes" : "no",
+                                  cell.drop_shadow_edges ? "yes" : "no",
                                   result.segment_lengths_m};
   for (const NumberColumn& column : kNumberColumns) {
     const double value = result.*column.value;

@@ -12,17 +12,16 @@
 namespace lilo::paper_bench {
 namespace {
 
-/// A recording whose scans may be cut in number and stripped of their firing times.
+/// A recording whose scans may be cut in number.
 class CellSource final : public ScanSource {
  public:
-  CellSource(std::unique_ptr<ScanSource> source, bool deskew, std::uint64_t most)
-      : source_(std::move(source)), deskew_(deskew), most_(most) {}
+  CellSource(std::unique_ptr<ScanSource> source, std::uint64_t most)
+      : source_(std::move(source)), most_(most) {}
 
   bool next(Scan& scan) override {
     if (most_ > 0 && taken_ == most_) return false;
     if (!source_->next(scan)) return false;
     ++taken_;
-    if (!deskew_) scan.motion_compensated = true;
     return true;
   }
   [[nodiscard]] DriverCounts driver_counts() const override { return source_->driver_counts(); }
@@ -35,7 +34,6 @@ class CellSource final : public ScanSource {
 
  private:
   std::unique_ptr<ScanSource> source_;
-  bool deskew_;
   std::uint64_t most_, taken_ = 0;
 };
 
@@ -132,7 +130,7 @@ void add_errors(const Trajectory& estimate, const Trajectory& truth,
 
 CellResult run_cell(const Cell& cell, const BenchmarkSet& set, const SetFacts& facts,
                     const Settings& settings, const std::string& folder, const Progress& progress) {
-  CellSource source(open_scans(set.input, settings.sensor), cell.deskew, settings.most_scans);
+  CellSource source(open_scans(set.input, settings.sensor), settings.most_scans);
   ScanLog log;
   const OdometryRun run =
       run_odometry(source, odometry_config(cell, facts.beams, settings.odometry),

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -67,8 +68,9 @@ void claim_folder(const std::string& folder, const std::string& settings) {
 }
 
 std::string name_of(const Cell& cell) {
-  return fmt::format("{} {} {} {}{}", cell.set, image_text(cell), to_string(cell.group),
-                     to_string(cell.ground_filter), cell.deskew ? "" : " rigid");
+  std::string name = file_stem(cell);
+  std::replace(name.begin() + static_cast<std::ptrdiff_t>(cell.set.size()), name.end(), '_', ' ');
+  return name;
 }
 
 std::string result_line(const CellResult& result) {

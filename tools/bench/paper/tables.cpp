@@ -64,7 +64,10 @@ std::string change_text(const CellResult& result) {
   if (cell.ground_filter != base.ground_filter) {
     add(fmt::format("ground by {}", to_string(cell.ground_filter)));
   }
-  if (!cell.deskew) add("no deskewing");
+  if (cell.deskew == Deskew::one_stage) add("one-stage deskewing");
+  if (cell.deskew == Deskew::none) add("no deskewing");
+  if (cell.pixel_centres) add("points at pixel centres");
+  if (!cell.drop_shadow_edges) add("edges on both sides of a jump");
   return text.empty() ? "the paper's choice" : text;
 }
 
