@@ -84,10 +84,10 @@ Chart box_chart(const std::string& folder, int rows, std::size_t sets) {
   run_gnuplot(folder, name, script + "unset multiplot\n");
   return {
       name + ".png", fmt::format("Figure 9a, images of {} rows", rows),
-      fmt::format("Image sizes and feature groups over {} set{}: quartiles, whiskers to 1.5 box "
-                  "heights; circle: mean, dot: a set, cross: an outlier. From boxes.csv and "
-                  "box_samples.csv.",
-                  sets, sets == 1 ? "" : "s")};
+      fmt::format("Image sizes and feature groups over {}: quartiles, whiskers to 1.5 box "
+                  "heights; circle: mean, dot: a set, cross: an outlier. Drawn from the lines of "
+                  "boxes.csv and box_samples.csv whose column rows is {}.",
+                  sets == 1 ? "the one set of this height" : "the sets of this height", rows)};
 }
 
 /// One line a file into a panel.
@@ -130,6 +130,13 @@ std::vector<Line> lines_of(const std::vector<Cell>& cells, const char* kind, boo
                      by_group ? std::string(to_string(cell.group)) : image_text(cell)});
   }
   return lines;
+}
+
+/// "tracks/a.csv, tracks/b.csv".
+std::string files_text(const std::vector<Line>& lines) {
+  std::string text;
+  for (const Line& line : lines) text += (text.empty() ? "" : ", ") + line.file;
+  return text;
 }
 
 /// The chosen cell with every width, or with every group.
@@ -199,8 +206,8 @@ Chart path_chart(const std::string& folder, const Cell& chosen) {
   run_gnuplot(folder, name, script + "\n");
   return {name + ".png", "Figures 9b and 10, " + chosen.set,
           fmt::format("Paths by feature group, {} image, over the truth, laid over its first pose. "
-                      "From tracks/.",
-                      image_text(chosen))};
+                      "Drawn from {}, columns x_m, y_m, true_x_m, true_y_m.",
+                      image_text(chosen), files_text(lines))};
 }
 
 void add_set_charts(const std::string& folder, const Cell& chosen, std::vector<Chart>& charts) {
@@ -215,16 +222,19 @@ void add_set_charts(const std::string& folder, const Cell& chosen, std::vector<C
                                 {"position error (m)", "orientation error (deg)"}},
                                tracks),
                     "Errors over distance, " + chosen.set,
-                    "Drift since the first pose, by feature group. From tracks/."});
+                    fmt::format("Drift since the first pose, by feature group. Drawn from {}, "
+                                "columns distance_m, error_m, error_deg.",
+                                files_text(tracks))});
   charts.push_back(
       {two_panels(
            folder,
            {"fig11_" + chosen.set, "scan", "scan", {"edges", "surfaces"}, {"edges", "surfaces"}},
            scans),
        "Figure 11, " + chosen.set,
-       fmt::format("Features aligned in every scan, by image size; group {}. From "
-                   "scans/.",
-                   to_string(chosen.group))});
+       fmt::format(
+           "Features aligned in every scan, by image size; group {}. Drawn from {}, columns "
+           "edges, surfaces.",
+           to_string(chosen.group), files_text(scans))});
   charts.push_back({two_panels(folder,
                                {"fig12_" + chosen.set,
                                 "scan",
@@ -233,8 +243,9 @@ void add_set_charts(const std::string& folder, const Cell& chosen, std::vector<C
                                 {"feature extraction (ms)", "pose and map (ms)"}},
                                scans),
                     "Figure 12, " + chosen.set,
-                    fmt::format("CPU time of every scan, by image size; group {}. From scans/.",
-                                to_string(chosen.group))});
+                    fmt::format("CPU time of every scan, by image size; group {}. Drawn from {}, "
+                                "columns extraction_ms, pose_ms.",
+                                to_string(chosen.group), files_text(scans))});
 }
 
 }  // namespace

@@ -19,9 +19,10 @@ p { margin: .3em 0 .8em; color: #555; }
 table { border-collapse: collapse; font-size: .87em; font-variant-numeric: tabular-nums; }
 th { text-align: right; border-bottom: 2px solid #444; padding: .25em .7em; vertical-align: bottom; }
 td { text-align: right; border-bottom: 1px solid #ddd; padding: .2em .7em; }
-th:first-child, td:first-child, .words { text-align: left; }
+.words { text-align: left; }
 tr.last td { border-top: 1px solid #444; font-weight: bold; }
 td.paper, th.paper { background: #f3f1e8; }
+.line { color: #999; font-size: .85em; }
 .wide { overflow-x: auto; } img { max-width: 100%; } figure { margin: 2em 0; }
 figcaption { color: #555; } figcaption b { color: #222; display: block; font-size: 1.1em; }
 @media print { body { max-width: none; margin: 0; } figure, table { break-inside: avoid; } }
@@ -60,15 +61,17 @@ std::string class_of(const CsvTable& table, std::size_t column) {
 }
 
 std::string html_table(const CsvTable& table) {
-  std::string html = "<div class=wide><table>\n<tr>";
+  std::string html = "<div class=wide><table>\n<tr><th class=line>line</th>";
   std::vector<std::string> classes;
   for (std::size_t k = 0; k < table.columns.size(); ++k) {
     classes.push_back(class_of(table, k));
     html += fmt::format("<th{}>{}</th>", classes[k], html_text(heading(table.columns[k])));
   }
   html += "</tr>\n";
+  std::size_t line = 1;  // the header's
   for (const std::vector<std::string>& row : table.rows) {
     html += row[0] == "mean" ? "<tr class=last>" : "<tr>";
+    html += fmt::format("<td class=line>{}</td>", ++line);
     for (std::size_t k = 0; k < row.size(); ++k) {
       html += fmt::format("<td{}>{}</td>", classes[k], html_text(row[k]));
     }
@@ -118,9 +121,10 @@ std::string html_report(const std::string& folder, const std::string& summary,
       "<p>{}</p>\n",
       kStyle, html_text(summary));
   for (const ReportTable& table : tables) {
-    html += fmt::format("<h2>{}</h2>\n<p>{} Rows: {}.</p>\n", html_text(table.title),
-                        html_text(table.note), html_text(table.file));
-    html += table.table.rows.empty() ? "<p>None.</p>\n" : html_table(table.table);
+    html += fmt::format("<h2>{}</h2>\n<p>{} The table is <code>{}</code>.</p>\n",
+                        html_text(table.title), html_text(table.note), html_text(table.file));
+    html += table.table.rows.empty() ? fmt::format("<p>{}</p>\n", html_text(table.none))
+                                     : html_table(table.table);
   }
   for (const Chart& chart : charts) html += html_figure(folder, chart);
   return html + "</body></html>\n";
