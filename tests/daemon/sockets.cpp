@@ -30,11 +30,14 @@ void require(bool holds, const char* what) {
   if (!holds) throw std::system_error(errno, std::generic_category(), what);
 }
 
-std::optional<std::string> receive_from(int fd, std::chrono::milliseconds at_most) {
+std::optional<std::string> receive_from(int fd, std::chrono::milliseconds at_most,
+                                        sockaddr_in* sender = nullptr) {
   pollfd poll_fd{.fd = fd, .events = POLLIN};
   if (poll(&poll_fd, 1, static_cast<int>(at_most.count())) <= 0) return std::nullopt;
   std::array<char, 65536> bytes{};
-  const ssize_t size = recv(fd, bytes.data(), bytes.size(), 0);
+  socklen_t length = sender == nullptr ? 0 : sizeof(*sender);
+  const ssize_t size = recvfrom(fd, bytes.data(), bytes.size(), 0,
+                                reinterpret_cast<sockaddr*>(sender), sender ? &length : nullptr);
   if (size < 0) return std::nullopt;
   return std::string(bytes.data(), static_cast<std::size_t>(size));
 }
@@ -55,7 +58,10 @@ UdpSocket::UdpSocket() : fd_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
 UdpSocket::~UdpSocket() { close(fd_); }
 
 std::optional<std::string> UdpSocket::receive(std::chrono::milliseconds at_most) {
-  return receive_from(fd_, at_most);
+  sockaddr_in sender{};
+  auto datagram = receive_from(fd_, at_most, &sender);
+  if (datagram) sender_ = ntohs(sender.sin_port);
+  return datagram;
 }
 
 void UdpSocket::send_to(std::uint16_t port, const std::string& datagram) const {

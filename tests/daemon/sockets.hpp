@@ -19,11 +19,13 @@ class UdpSocket {
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] std::string endpoint() const { return "127.0.0.1:" + std::to_string(port_); }
   std::optional<std::string> receive(std::chrono::milliseconds at_most);
+  /// Port that the datagram received last came from.
+  [[nodiscard]] std::uint16_t sender() const { return sender_; }
   void send_to(std::uint16_t port, const std::string& datagram) const;
 
  private:
   int fd_;
-  std::uint16_t port_ = 0;
+  std::uint16_t port_ = 0, sender_ = 0;
 };
 
 /// A port that was free a moment ago.

@@ -22,6 +22,29 @@ TEST(PoseMessage, IsReadFromTheProtocolsJson) {
   EXPECT_EQ(message.pose.pose.translation_m, Eigen::Vector3d(1.5, -2.25, 0.125));
   const Eigen::Vector3d turned = message.pose.pose.rotation * Eigen::Vector3d::UnitX();
   EXPECT_LT((turned - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  EXPECT_FALSE(message.deviation) << "it was not said, so it is not zero";
+  EXPECT_TRUE(message.weak.empty());
+}
+
+// Variances 0.01, 0.02, 0.06 m^2: 0.3 m; of rotation 0, 0 and (1 deg)^2. Weak along y, then yaw.
+TEST(PoseMessage, DeviationAndWeakDirectionsAreShown) {
+  std::string covariance = "0.01,0,0,0,0,0, 0,0.02,0,0,0,0, 0,0,0.06,0,0,0, 0,0,0,0,0,0,";
+  covariance += "0,0,0,0,0,0, 0,0,0,0,0,0.00030461741978670857";
+  const std::string more =
+      R"("covariance":[)" + covariance +
+      R"(],"weak_directions":[{"direction":[0.1,-0.995,0,0,0,0],"from_scan":0.03},)"
+      R"({"direction":[0,0,0,0,0,1],"from_scan":0.4}],"some_later_addition")";
+  std::string datagram = kDatagram;
+  const std::string place = R"("some_later_addition")";
+  datagram.replace(datagram.find(place), place.size(), more);
+  PoseMessage message;
+  ASSERT_EQ(parse_message(datagram, message), MessageKind::pose);
+  ASSERT_TRUE(message.deviation);
+  EXPECT_NEAR(message.deviation->position_m, 0.3, 1e-12);
+  const std::string line = pose_line(message);
+  for (const char* part : {" 0.300 ", " 1.000 ", "weak: y 3 %, rz 40 %\n"}) {
+    EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
+  }
 }
 
 TEST(PoseMessage, LineShowsTimeOfDayAndAngles) {
@@ -36,7 +59,7 @@ TEST(PoseMessage, LineShowsTimeOfDayAndAngles) {
 TEST(PoseMessage, LineNeverShowsMinusZero) {
   PoseMessage message;
   message.pose.pose.translation_m = {-1e-5, -0.0, -4e-4};
-  EXPECT_EQ(pose_line(message).find('-'), std::string::npos) << pose_line(message);
+  EXPECT_EQ(pose_line(message).find("-0"), std::string::npos) << pose_line(message);
 }
 
 TEST(PoseMessage, HealthIsOneShortLineAndTheUnknownIsShownAsItIs) {

@@ -20,8 +20,15 @@
 #include <sys/socket.h>
 #include <system_error>
 #include <unistd.h>
+#include <vector>
 
 namespace lilo {
+
+/// A direction along which the scan said too little.
+struct ClientWeakDirection {
+  std::array<double, 6> direction{};  // unit vector, x y z rx ry rz (m, rad), in the child frame
+  double from_scan = 0.0;             // 0: prediction alone; 1: scan alone
+};
 
 struct ClientPose {
   std::string session;     // a new one: lilod started again, or was reset
@@ -34,7 +41,8 @@ struct ClientPose {
   bool has_twist = false;                     // of the child frame:
   std::array<double, 3> linear{}, angular{};  // m/s, rad/s
   bool has_covariance = false;
-  std::array<double, 36> covariance{};  // row-major, x y z rx ry rz
+  std::array<double, 36> covariance{};  // m, rad; row-major, x y z rx ry rz, in the child frame
+  std::vector<ClientWeakDirection> weak_directions;  // the weakest first
   double latency_ms = 0.0;
 };
 
@@ -196,6 +204,14 @@ class Client {
     pose.has_covariance = message.has("pose/covariance/35");
     for (std::size_t k = 0; k < 36; ++k)
       pose.covariance[k] = message.number("pose/covariance/" + std::to_string(k));
+    pose.weak_directions.clear();
+    for (std::string weak = "pose/weak_directions/0"; message.has(weak + "/from_scan");
+         weak = "pose/weak_directions/" + std::to_string(pose.weak_directions.size())) {
+      ClientWeakDirection& added = pose.weak_directions.emplace_back();
+      added.from_scan = message.number(weak + "/from_scan");
+      for (std::size_t k = 0; k < 6; ++k)
+        added.direction[k] = message.number(weak + "/direction/" + std::to_string(k));
+    }
     return true;
   }
 

@@ -2,11 +2,29 @@
 
     from lilo_client import LiloClient
     for pose in LiloClient().poses():
-        print(pose["status"], pose["position"]["x"])
+        print(pose["status"], pose["position"]["x"], pose.get("covariance"))
+
+A pose is the dict of the protocol: "covariance" (36 numbers) and "weak_directions" are there when
+they are known.
 """
 import json
 import socket
 import time
+
+
+def covariance_in_parent_frame(pose):
+    """The pose's 6x6 covariance, row-major, about the axes of the parent frame, as ROS has it."""
+    x, y, z, w = (pose["orientation"][name] for name in "xyzw")
+    rotation = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
+    c = pose["covariance"]
+
+    def element(row, column):
+        i, j, block = row % 3, column % 3, 18 * (row // 3) + 3 * (column // 3)
+        return sum(rotation[i][k] * c[block + 6 * k + m] * rotation[j][m]
+                   for k in range(3) for m in range(3))
+    return [element(row, column) for row in range(6) for column in range(6)]
 
 
 class LiloClient:

@@ -5,7 +5,7 @@ from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
 from tf2_ros import TransformBroadcaster
 
-from lilo_client import LiloClient
+from lilo_client import LiloClient, covariance_in_parent_frame
 
 
 def copy(names, source, target):
@@ -25,8 +25,8 @@ def main():
         odometry.header.stamp.nanosec = pose["stamp"]["nsec"]
         copy("xyz", pose["position"], odometry.pose.pose.position)
         copy("xyzw", pose["orientation"], odometry.pose.pose.orientation)
-        if "covariance" in pose:  # ROS, too: row-major, x y z and rotations about them
-            odometry.pose.covariance = [float(c) for c in pose["covariance"]]
+        if "covariance" in pose:
+            odometry.pose.covariance = covariance_in_parent_frame(pose)
         if "twist" in pose:
             copy("xyz", pose["twist"]["linear"], odometry.twist.twist.linear)
             copy("xyz", pose["twist"]["angular"], odometry.twist.twist.angular)

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <numbers>
@@ -14,6 +16,29 @@ namespace {
 using nlohmann::json;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
+
+std::optional<PoseMessage::Deviation> deviation_from(const json& pose) {
+  if (!pose.contains("covariance")) return std::nullopt;
+  const json& c = pose["covariance"];
+  const auto root_of_trace = [&](std::size_t first) {
+    double trace = 0.0;
+    for (std::size_t k = first; k < first + 3; ++k) trace += c.at(7 * k).get<double>();
+    return std::sqrt(std::max(trace, 0.0));
+  };
+  return PoseMessage::Deviation{root_of_trace(0), root_of_trace(3)};
+}
+
+std::vector<PoseMessage::Weak> weak_from(const json& pose) {
+  std::vector<PoseMessage::Weak> out;
+  for (const json& weak : pose.value("weak_directions", json::array())) {
+    const auto direction = weak.at("direction").get<std::array<double, 6>>();
+    const auto* const largest =
+        std::max_element(direction.begin(), direction.end(),
+                         [](double a, double b) { return std::abs(a) < std::abs(b); });
+    out.push_back({static_cast<int>(largest - direction.begin()), weak.at("from_scan")});
+  }
+  return out;
+}
 
 PoseMessage message_from(const json& object) {
   const json& pose = object.at("pose");
@@ -31,6 +56,8 @@ PoseMessage message_from(const json& object) {
   message.pose.pose.rotation = Eigen::Quaterniond(q.at("w").get<double>(), q.at("x").get<double>(),
                                                   q.at("y").get<double>(), q.at("z").get<double>())
                                    .normalized();
+  message.deviation = deviation_from(pose);
+  message.weak = weak_from(pose);
   return message;
 }
 
@@ -45,6 +72,24 @@ Eigen::Vector3d roll_pitch_yaw_deg(const Eigen::Quaterniond& rotation) {
 
 /// To three decimals, and never "-0.000".
 double shown(double value) { return std::round(value * 1e3) / 1e3 + 0.0; }
+
+std::string deviation_columns(const PoseMessage& message) {
+  if (!message.deviation) return fmt::format("  {:>8}  {:>8}", "-", "-");
+  return fmt::format("  {:8.3f}  {:8.3f}", message.deviation->position_m,
+                     message.deviation->rotation_rad * 180.0 / std::numbers::pi);
+}
+
+/// "  weak: x 3 %, rz 40 %", the part of each that came from the scan.
+std::string weak_column(const PoseMessage& message) {
+  constexpr std::array<const char*, 6> kAxes{"x", "y", "z", "rx", "ry", "rz"};
+  std::string out;
+  for (const PoseMessage::Weak& weak : message.weak) {
+    out += out.empty() ? "  weak: " : ", ";
+    out += fmt::format("{} {:.0f} %", kAxes[static_cast<std::size_t>(weak.axis)],
+                       100.0 * weak.from_scan);
+  }
+  return out;
+}
 
 std::string health_line(const json& object) {
   const json& health = object.at("health");
@@ -79,7 +124,7 @@ MessageKind parse_message(std::string_view datagram, PoseMessage& message) {
 
 std::string pose_heading() {
   return "       time UTC       seq  status              x m        y m        z m    roll deg  "
-         "pitch deg    yaw deg\n";
+         "pitch deg    yaw deg     +- m    +- deg\n";
 }
 
 std::string pose_line(const PoseMessage& message) {
@@ -90,9 +135,11 @@ std::string pose_line(const PoseMessage& message) {
   std::tm utc{};
   gmtime_r(&seconds, &utc);
   return fmt::format(
-      "{:%H:%M:%S}.{:06d}  {:8d}  {:<12}  {:9.3f}  {:9.3f}  {:9.3f}   {:9.3f}  {:9.3f}  {:9.3f}\n",
+      "{:%H:%M:%S}.{:06d}  {:8d}  {:<12}  {:9.3f}  {:9.3f}  {:9.3f}   {:9.3f}  {:9.3f}  "
+      "{:9.3f}{}{}\n",
       utc, stamp_ns % kSecond / 1000, message.seq, message.status, shown(t.x()), shown(t.y()),
-      shown(t.z()), shown(angles.x()), shown(angles.y()), shown(angles.z()));
+      shown(t.z()), shown(angles.x()), shown(angles.y()), shown(angles.z()),
+      deviation_columns(message), weak_column(message));
 }
 
 std::string other_line(std::string_view datagram) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lilo {
 
@@ -15,6 +16,18 @@ struct PoseMessage {
   std::string session;
   std::string status;
   StampedPose pose;
+
+  /// 1 sigma of the position and of the rotation, each the root of its block's trace.
+  struct Deviation {
+    double position_m = 0.0, rotation_rad = 0.0;
+  };
+  std::optional<Deviation> deviation;  ///< nothing: the daemon did not say
+
+  struct Weak {
+    int axis = 0;  ///< the direction's largest component: x y z rx ry rz
+    double from_scan = 0.0;
+  };
+  std::vector<Weak> weak;  ///< the weakest first
 };
 
 enum class MessageKind : std::uint8_t { pose, other, malformed };
@@ -25,7 +38,8 @@ MessageKind parse_message(std::string_view datagram, PoseMessage& message);
 
 /// Two heading lines for pose_line().
 std::string pose_heading();
-/// One aligned line: time of day (UTC), seq, status, position, roll pitch yaw in degrees.
+/// One aligned line: time of day (UTC), seq, status, position, roll pitch yaw in degrees, 1 sigma
+/// of both, and the weak directions.
 std::string pose_line(const PoseMessage& message);
 
 /// One line for any other datagram: the gist of a health report, the datagram itself else.

@@ -1,0 +1,159 @@
+#include "daemon/pose_message.hpp"
+#include "tests/daemon/child_process.hpp"
+#include "tests/daemon/sockets.hpp"
+#include "tools/clients/lilo_client.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <utility>
+
+/// What the clients we give away make of a pose whose every number is another.
+namespace lilo {
+namespace {
+
+using nlohmann::json;
+
+const std::string kPython = "/usr/bin/python3";
+
+// A quarter turn to the left.
+Estimate an_estimate() {
+  Estimate e;
+  e.stamp_ns = 1'700'000'000'250'000'000;
+  e.T_odom_sensor = {
+      Eigen::Quaterniond(Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitZ())),
+      {1.0, 2.0, 3.0}};
+  e.status = TrackingStatus::degraded;
+  e.twist = {{4.0, 5.0, 6.0}, {0.1, 0.2, 0.3}};
+  e.has_covariance = true;
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 6; ++column)
+      e.covariance(row, column) = 1.0 + 0.1 * row + 0.01 * column;
+  e.weak_count = 2;
+  e.weak_directions[0].direction << 0.6, 0.0, 0.0, 0.0, 0.0, -0.8;
+  e.weak_directions[0].from_scan = 0.25;
+  e.weak_directions[1].direction << 0.0, 1.0, 0.0, 0.0, 0.0, 0.0;
+  e.weak_directions[1].from_scan = 0.5;
+  return e;
+}
+
+/// Answers every request by the same pose.
+class OnePoseServer {
+ public:
+  explicit OnePoseServer(const Estimate& estimate) {
+    JsonWriter out;
+    const PoseMessageContext context{"0123456789abcdef", "odom", "velodyne"};
+    pose_ = write_pose(context, {.estimate = estimate, .seq = 7}, 2'000'000, out);
+    thread_ = std::thread([this] {
+      while (!stop_) {
+        if (socket_.receive(std::chrono::milliseconds(50)))
+          socket_.send_to(socket_.sender(), pose_);
+      }
+    });
+  }
+  ~OnePoseServer() {
+    stop_ = true;
+    thread_.join();
+  }
+  OnePoseServer(const OnePoseServer&) = delete;
+  OnePoseServer& operator=(const OnePoseServer&) = delete;
+  [[nodiscard]] std::uint16_t port() const { return socket_.port(); }
+
+ private:
+  UdpSocket socket_;
+  std::string pose_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+TEST(ClientFields, CppClientReadsCovarianceAndWeakDirections) {
+  const Estimate e = an_estimate();
+  const OnePoseServer server(e);
+  Client client("127.0.0.1", server.port());
+  ClientPose pose;
+  ASSERT_TRUE(client.next(pose));
+  EXPECT_EQ(pose.seq, 7U);
+  EXPECT_EQ(pose.status, "degraded");
+  ASSERT_TRUE(pose.has_covariance);
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column)
+      EXPECT_DOUBLE_EQ(pose.covariance[static_cast<std::size_t>(6 * row + column)],
+                       1.0 + 0.1 * row + 0.01 * column);
+  }
+  ASSERT_EQ(pose.weak_directions.size(), 2U);
+  EXPECT_EQ(pose.weak_directions[0].direction, (std::array<double, 6>{0.6, 0, 0, 0, 0, -0.8}));
+  EXPECT_EQ(pose.weak_directions[0].from_scan, 0.25);
+  EXPECT_EQ(pose.weak_directions[1].from_scan, 0.5);
+}
+
+// The same object goes on to the next pose, which has neither.
+TEST(ClientFields, WhatIsNotSaidIsNotThere) {
+  ClientPose pose;
+  {
+    const OnePoseServer server(an_estimate());
+    Client client("127.0.0.1", server.port());
+    ASSERT_TRUE(client.next(pose));
+  }
+  Estimate e = an_estimate();
+  e.has_covariance = false;
+  e.weak_count = 0;
+  e.status = TrackingStatus::lost;
+  const OnePoseServer server(e);
+  Client client("127.0.0.1", server.port());
+  ASSERT_TRUE(client.next(pose));
+  EXPECT_FALSE(pose.has_covariance);
+  EXPECT_FALSE(pose.has_twist) << "nobody measured it";
+  EXPECT_TRUE(pose.weak_directions.empty());
+}
+
+TEST(ClientFields, PythonClientHandsOnTheProtocol) {
+  if (!std::filesystem::exists(kPython)) GTEST_SKIP() << kPython << " is not here";
+  const OnePoseServer server(an_estimate());
+  const std::string script =
+      "import sys, json; sys.path.insert(0, sys.argv[1]); from lilo_client import LiloClient; "
+      "print(json.dumps(next(LiloClient(port=int(sys.argv[2])).poses(10))))";
+  const Finished run =
+      run_to_end({kPython, "-c", script, LILO_CLIENTS_DIR, std::to_string(server.port())});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const json pose = json::parse(run.output);
+  EXPECT_EQ(pose["seq"], 7);
+  EXPECT_EQ(pose["covariance"].size(), 36U);
+  EXPECT_EQ(pose["covariance"][6 * 2 + 5], 1.25);
+  EXPECT_EQ(pose["weak_directions"][0]["direction"], json({0.6, 0, 0, 0, 0, -0.8}));
+}
+
+// ROS' covariance is about the axes of the parent frame: by hand, for a quarter turn to the left,
+// where x of the child is y of the parent, and y is -x.
+TEST(ClientFields, Ros2BridgeTurnsTheCovariance) {
+  if (!std::filesystem::exists(kPython)) GTEST_SKIP() << kPython << " is not here";
+  const Estimate e = an_estimate();
+  const OnePoseServer server(e);
+  const Finished run = run_to_end({kPython, LILO_ROS2_STUBS, LILO_CLIENTS_DIR "/ros2_bridge.py",
+                                   std::to_string(server.port())});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const json odometry = json::parse(run.output);
+  EXPECT_EQ(odometry["header"]["frame_id"], "odom");
+  EXPECT_EQ(odometry["child_frame_id"], "velodyne");
+  EXPECT_EQ(odometry["header"]["stamp"]["nanosec"], 250'000'000);
+  EXPECT_EQ(odometry["pose"]["pose"]["position"]["z"], 3.0);
+  EXPECT_EQ(odometry["twist"]["twist"]["linear"]["y"], 5.0);
+  // Of each axis of the parent: the child's axis, and its sign.
+  const std::array<std::pair<int, double>, 6> from{
+      {{1, -1}, {0, 1}, {2, 1}, {4, -1}, {3, 1}, {5, 1}}};
+  for (std::size_t row = 0; row < 6; ++row) {
+    for (std::size_t column = 0; column < 6; ++column) {
+      const auto [r, row_sign] = from[row];
+      const auto [c, column_sign] = from[column];
+      EXPECT_NEAR(odometry["pose"]["covariance"][6 * row + column].get<double>(),
+                  row_sign * column_sign * e.covariance(r, c), 1e-6)
+          << row << ' ' << column;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lilo
