@@ -58,6 +58,7 @@ TEST_P(SystemdUnit, LeavesRealTimeIn) {
     EXPECT_NE(text_.find(needed), std::string::npos) << needed;
   }
   EXPECT_FALSE(std::regex_search(text_, std::regex("\nRestrictRealtime=")));
+  EXPECT_FALSE(std::regex_search(text_, std::regex("\nLimitRTTIME="))) << "kills a late worker";
   EXPECT_FALSE(std::regex_search(text_, std::regex("\nSystemCallFilter=~.*@resources")));
 }
 
