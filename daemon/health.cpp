@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <utility>
 
 namespace lilo {
 namespace {
@@ -98,10 +99,18 @@ class Metrics {
   }
   void gauge(const char* name, const char* help, double value) { add(name, help, "gauge", value); }
   void quantiles(const char* name, const char* help, const Quantiles& ms) {
-    fmt::format_to(to(), "# HELP {} {}\n# TYPE {} gauge\n", name, help, name);
-    fmt::format_to(to(), "{}{{quantile=\"0.5\"}} {:.6g}\n", name, ms.p50 * 1e-3);
-    fmt::format_to(to(), "{}{{quantile=\"0.99\"}} {:.6g}\n", name, ms.p99 * 1e-3);
-    fmt::format_to(to(), "{}{{quantile=\"1\"}} {:.6g}\n", name, ms.max * 1e-3);
+    declare(name, help);
+    samples(name, "", ms);
+  }
+  void stages(const char* name, const char* help, const std::array<Quantiles, kStageCount>& ms) {
+    declare(name, help);
+    for (std::size_t k = 0; k < ms.size(); ++k)
+      samples(name, to_string(static_cast<Stage>(k)), ms[k]);
+  }
+  void policy(const char* name, const char* help, const ThreadPolicy& p) {
+    declare(name, help);
+    fmt::format_to(to(), "{}{{policy=\"{}\",priority=\"{}\",cpus=\"{}\"}} 1\n", name, p.policy,
+                   p.priority, p.cpus);
   }
   void label(const char* name, const char* help, const char* key, std::string_view value) {
     fmt::format_to(to(), "# HELP {} {}\n# TYPE {} gauge\n{}{{{}=\"{}\"}} 1\n", name, help, name,
@@ -110,6 +119,18 @@ class Metrics {
 
  private:
   std::back_insert_iterator<std::string> to() { return std::back_inserter(text_); }
+  void declare(const char* name, const char* help) {
+    fmt::format_to(to(), "# HELP {} {}\n# TYPE {} gauge\n", name, help, name);
+  }
+  // `stage` empty: no such label.
+  void samples(const char* name, std::string_view stage, const Quantiles& ms) {
+    for (const auto& [quantile, value] :
+         {std::pair{"0.5", ms.p50}, std::pair{"0.99", ms.p99}, std::pair{"1", ms.max}}) {
+      fmt::format_to(to(), "{}{{", name);
+      if (!stage.empty()) fmt::format_to(to(), "stage=\"{}\",", stage);
+      fmt::format_to(to(), "quantile=\"{}\"}} {:.6g}\n", quantile, value * 1e-3);
+    }
+  }
   void add(const char* name, const char* help, const char* type, double value) {
     fmt::format_to(to(), "# HELP {} {}\n# TYPE {} {}\n{} {:.15g}\n", name, help, name, type, name,
                    value);
@@ -177,10 +198,17 @@ void write_prometheus(const std::string& session, const Health& h, std::string& 
   m.quantiles("lilo_latency_seconds", "Last packet of a revolution to its datagram, last minute.",
               h.latency_ms);
   m.quantiles("lilo_processing_seconds", "Odometry of one scan, last minute.", h.processing_ms);
+  m.stages("lilo_stage_seconds", "Stages of the odometry of one scan, last minute.", h.stages_ms);
+  m.label("lilo_clock_info", "Where the sensor's stamps come from.", "source", to_string(h.clock));
+  m.policy("lilo_worker_policy_info", "Of the worker, read back from the kernel.",
+           h.realtime.worker);
+  m.gauge("lilo_locked_bytes", "Memory locked.", d(h.realtime.locked_memory_kb) * 1024.0);
   m.gauge("lilo_realtime_as_configured", "1: nothing was refused.",
           h.realtime.refusals.empty() ? 1.0 : 0.0);
   m.counter("lilo_worker_minor_faults_total", "Page faults of the worker since it was warm.",
             d(h.worker_minor_faults));
+  m.counter("lilo_major_faults_total", "Page faults that waited for a disk, since it was ready.",
+            d(h.major_faults));
   m.gauge("lilo_resident_bytes", "Memory in use.", h.resident_mb * 1048576.0);
 }
 
