@@ -27,17 +27,37 @@ const char* to_string(Stage stage) {
 
 struct Odometry::Impl {
   std::variant<standard::Tracker, paper::PaperOdometry> profile;
+  FeatureExtractor extractor;
+  ScanFeatures features;
 };
 
 Odometry::Odometry(const OdometryConfig& config)
     : impl_(config.profile == Profile::paper
-                ? std::make_unique<Impl>(Impl{paper::PaperOdometry(config)})
-                : std::make_unique<Impl>(Impl{standard::Tracker(config)})) {}
+                ? std::make_unique<Impl>(
+                      Impl{paper::PaperOdometry(config), FeatureExtractor(config), {}})
+                : std::make_unique<Impl>(
+                      Impl{standard::Tracker(config), FeatureExtractor(config), {}})) {}
 
 Odometry::~Odometry() = default;
 
 Estimate Odometry::process(const Scan& scan, StageHook hook) {
-  return std::visit([&](auto& profile) { return profile.process(scan, hook); }, impl_->profile);
+  impl_->extractor.finish(scan, impl_->features);
+  if (std::holds_alternative<standard::Tracker>(impl_->profile)) hook(Stage::project);
+  const Estimate estimate = align(scan, impl_->features, hook);
+  update_map(impl_->features, hook);
+  return estimate;
+}
+
+Estimate Odometry::align(const Scan& scan, const ScanFeatures& features, StageHook hook) {
+  if (auto* tracker = std::get_if<standard::Tracker>(&impl_->profile)) {
+    return tracker->align(scan, features.all, hook);
+  }
+  return std::get<paper::PaperOdometry>(impl_->profile).process(scan, hook);
+}
+
+void Odometry::update_map(const ScanFeatures& features, StageHook hook) {
+  auto* tracker = std::get_if<standard::Tracker>(&impl_->profile);
+  if (tracker != nullptr) tracker->update_map(features.all, hook);
 }
 
 std::vector<Eigen::Vector3f> Odometry::map_points() const {

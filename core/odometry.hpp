@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/estimate.hpp"
+#include "core/feature_extractor.hpp"
 #include "core/odometry_config.hpp"
 #include "core/scan.hpp"
 
@@ -37,6 +38,12 @@ class Odometry {
   /// Takes the next scan and says where the sensor was at its last firing. Never throws on data:
   /// a scan too poor to align gives the prediction with status `lost`.
   Estimate process(const Scan& scan, StageHook hook = {});
+
+  /// The same in parts, for those who want the pose early: align() and then update_map(), with the
+  /// features that FeatureExtractor found in the scan. Profile paper does all of it in align().
+  Estimate align(const Scan& scan, const ScanFeatures& features, StageHook hook = {});
+  /// What the scan just aligned adds to the map. Call it once after each align().
+  void update_map(const ScanFeatures& features, StageHook hook = {});
 
   /// The local map in the odometry frame (m), in no particular order: profile default, the mean of
   /// every fine cell; paper, both map clouds. Allocates: for saving, not for every scan.

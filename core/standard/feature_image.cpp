@@ -12,39 +12,100 @@ constexpr float kSteep = 0.84F;  // tan 40 degrees
 // Two returns belong to one surface when they are not much farther apart than the rings would be
 // on a surface of that slope.
 constexpr float kSameSurface = 3.0F;
+// The lasers of one firing look up to 18 degrees apart (HDL-64E). Columns nearer to the front, and
+// those around the scan's first return, where it ends as well, may still get returns.
+constexpr float kSpread_rad = 0.35F;
+
+float columns_per_rad(int columns) {
+  return static_cast<float>(columns) / (2.0F * std::numbers::pi_v<float>);
+}
 
 }  // namespace
 
-const std::vector<Feature>& FeatureImage::build(const Scan& scan, double min_range_m,
-                                                double max_range_m) {
-  project(scan, min_range_m, max_range_m);
-  features_.clear();
-  for (int j = 0; j < columns_; ++j) {
-    classify_column(scan.beams, pixels_.data() + static_cast<std::ptrdiff_t>(j) * rows_);
-  }
-  return features_;
+FeatureImage::FeatureImage(int columns, RangeLimits limits)
+    : columns_(columns),
+      margin_(static_cast<int>(std::ceil(kSpread_rad * columns_per_rad(columns)))),
+      nearest2_(static_cast<float>(limits.min_m * limits.min_m)),
+      farthest2_(static_cast<float>(limits.max_m * limits.max_m)) {}
+
+const std::vector<Feature>& FeatureImage::build(const Scan& scan) {
+  begin(scan.beams);
+  project(scan.returns);
+  return finish(scan);
 }
 
-void FeatureImage::project(const Scan& scan, double min_range_m, double max_range_m) {
-  rows_ = scan.beams.ring_count;
-  pixels_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_), Pixel{});
+void FeatureImage::begin(const BeamTable& beams) {
+  beams_ = beams;
+  const auto size = static_cast<std::size_t>(beams.ring_count) * static_cast<std::size_t>(columns_);
+  pixels_.assign(size, Pixel{});
+  for (std::vector<Feature>* features : {&features_, &last_features_}) {
+    if (features->capacity() < size) features->resize(size);  // touches it all
+    features->clear();
+  }
+  first_column_ = -1;
+  front_ = classified_ = 0;
+  disturbed_ = false;
+}
+
+void FeatureImage::add(std::span<const Return> returns) {
+  project(returns);
+  if (!disturbed_) classify_until(front_ - margin_);
+}
+
+std::vector<Feature>& FeatureImage::finish(const Scan& scan) {
+  if (disturbed_ || classified_ == 0) {
+    features_.clear();
+    for (int column = 0; column < columns_; ++column) classify_column(column, features_);
+  } else {
+    classify_until(columns_);
+    features_.insert(features_.end(), last_features_.begin(), last_features_.end());
+  }
   const auto duration_ns =
       static_cast<float>(std::max<std::int64_t>(scan.end_ns - scan.start_ns, 1));
   const float per_ns = 1.0F / duration_ns;
-  const float per_rad = static_cast<float>(columns_) / (2.0F * std::numbers::pi_v<float>);
-  const auto near2 = static_cast<float>(min_range_m * min_range_m);
-  const auto far2 = static_cast<float>(max_range_m * max_range_m);
-  for (const Return& r : scan.returns) {
+  for (Feature& f : features_)
+    f.s = scan.motion_compensated ? 1.0F : std::clamp(f.s * per_ns, 0.0F, 1.0F);
+  return features_;
+}
+
+int FeatureImage::column_of(float azimuth_rad) const {
+  const auto column =
+      static_cast<int>((std::numbers::pi_v<float> - azimuth_rad) * columns_per_rad(columns_));
+  return std::clamp(column < columns_ ? column : column - columns_, 0, columns_ - 1);
+}
+
+int FeatureImage::place_of(int column) const {
+  const int place = column - first_column_;
+  return place < 0 ? place + columns_ : place;
+}
+
+void FeatureImage::project(std::span<const Return> returns) {
+  const int rows = beams_.ring_count;
+  const int seam = columns_ - 2 * margin_;
+  for (const Return& r : returns) {
     const float flat2 = r.x_m * r.x_m + r.y_m * r.y_m;
     const float range2 = flat2 + r.z_m * r.z_m;
-    if (!(range2 >= near2 && range2 <= far2) || r.ring >= rows_) continue;  // drops NaN as well
-    const int column = static_cast<int>((std::numbers::pi_v<float> - r.azimuth_rad) * per_rad);
-    const int wrapped = std::clamp(column < columns_ ? column : column - columns_, 0, columns_ - 1);
+    if (!(range2 >= nearest2_ && range2 <= farthest2_) || r.ring >= rows) continue;  // and NaN
+    const int column = column_of(r.azimuth_rad);
     Pixel& pixel =
-        pixels_[static_cast<std::size_t>(wrapped) * static_cast<std::size_t>(rows_) + r.ring];
+        pixels_[static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + r.ring];
     if (pixel.flat_m > 0.0F) continue;
-    const float s = scan.motion_compensated ? 1.0F : static_cast<float>(r.t_ns) * per_ns;
-    pixel = {r.x_m, r.y_m, r.z_m, std::sqrt(flat2), std::clamp(s, 0.0F, 1.0F)};
+    pixel = {r.x_m, r.y_m, r.z_m, std::sqrt(flat2), static_cast<float>(r.t_ns)};
+    if (first_column_ < 0) first_column_ = (column + margin_) % columns_;
+    const int place = place_of(column);
+    if (place < classified_) disturbed_ = true;
+    if (place < seam && place > front_) front_ = place;
+  }
+}
+
+void FeatureImage::classify_until(int place) {
+  for (; classified_ < place; ++classified_) {
+    const int column = first_column_ + classified_;
+    if (column < columns_) {
+      classify_column(column, last_features_);
+    } else {
+      classify_column(column - columns_, features_);
+    }
   }
 }
 
@@ -61,42 +122,40 @@ FeatureImage::Step FeatureImage::step_between(const Pixel& lower, const Pixel& u
   return {dd * dd + dz * dz < reach_m * reach_m, steep};
 }
 
-void FeatureImage::classify_column(const BeamTable& beams, const Pixel* column) {
+void FeatureImage::classify_column(int column, std::vector<Feature>& out) const {
+  const int rows = beams_.ring_count;
+  const Pixel* pixels = pixels_.data() + static_cast<std::ptrdiff_t>(column) * rows;
   Step below;
-  for (int ring = 0; ring < rows_; ++ring) {
+  for (int ring = 0; ring < rows; ++ring) {
     Step above;
-    if (ring + 1 < rows_) {
+    if (ring + 1 < rows) {
       const auto k = static_cast<std::size_t>(ring);
-      above = step_between(column[ring], column[ring + 1],
-                           beams.elevation_rad[k + 1] - beams.elevation_rad[k]);
+      above = step_between(pixels[ring], pixels[ring + 1],
+                           beams_.elevation_rad[k + 1] - beams_.elevation_rad[k]);
     }
-    if (column[ring].flat_m > 0.0F) add_feature(column, ring, below, above);
+    if (pixels[ring].flat_m > 0.0F) add_feature(pixels, ring, below, above, out);
     below = above;
   }
 }
 
-void FeatureImage::add_feature(const Pixel* column, int ring, Step below, Step above) {
+void FeatureImage::add_feature(const Pixel* column, int ring, Step below, Step above,
+                               std::vector<Feature>& out) {
   const Pixel& p = column[ring];
   const bool flat = (above.connected && !above.steep) || (below.connected && !below.steep);
   const bool steep = (above.connected && above.steep) || (below.connected && below.steep);
   if (flat && steep) return;          // a kerb or the foot of a wall: neither
   if (flat && p.z_m >= 0.0F) return;  // a roof or a canopy seen from below
-  Feature f{p.x_m,
-            p.y_m,
-            p.z_m,
-            p.s,
-            0.0F,
-            0.0F,
-            0.0F,
-            flat ? Kind::ground : Kind::structure,
-            static_cast<std::uint8_t>(ring)};
+  Feature f{
+      p.x_m,  p.y_m, p.z_m,
+      p.t_ns,  // until finish()
+      0.0F,   0.0F,  0.0F,  flat ? Kind::ground : Kind::structure, static_cast<std::uint8_t>(ring)};
   if (above.connected || below.connected) {
     const Pixel& neighbour = above.connected ? column[ring + 1] : column[ring - 1];
     f.dx_m = neighbour.x_m - p.x_m;
     f.dy_m = neighbour.y_m - p.y_m;
     f.dz_m = neighbour.z_m - p.z_m;
   }
-  features_.push_back(f);
+  out.push_back(f);
 }
 
 }  // namespace lilo::standard

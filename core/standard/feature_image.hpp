@@ -3,6 +3,7 @@
 #include "core/scan.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// Features found in the image plane: the paper's idea, with exact returns and in metres.
@@ -22,37 +23,68 @@ struct Feature {
   std::uint8_t ring;
 };
 
+/// Returns nearer or farther are not used.
+struct RangeLimits {
+  double min_m = 1.0, max_m = 100.0;
+};
+
 /// The spherical range image of a scan. Reused from scan to scan: no allocation after the first.
 /// Columns are contiguous, because a firing fills a column and neighbouring rings are compared.
+///
+/// Returns are projected (paper Eqs. 2-5), and every filled pixel is classified by the slope to its
+/// neighbours above and below: the vertical gradient of Eq. 7, in metres instead of grey levels.
+/// The first return in a pixel stays: the nearest would pull every range nearer by its noise.
+///
+/// A scan can be taken in parts, begin() -> add() -> ... -> finish(), while it is being measured.
+/// Columns that the sensor has passed are classified at once; should a return come for one of them
+/// after all, everything is classified again at the end. So the features are the same bits however
+/// the scan was divided.
 class FeatureImage {
  public:
-  explicit FeatureImage(int columns) : columns_(columns) {}
+  FeatureImage(int columns, RangeLimits limits);
 
-  /// Projects the scan (paper Eqs. 2-5) and classifies every filled pixel by the slope to its
-  /// neighbours above and below: the vertical gradient of Eq. 7, in metres instead of grey levels.
-  /// The first return in a pixel stays: the nearest would pull every range nearer by its noise.
-  /// The result is ordered column by column and lives until the next call.
-  const std::vector<Feature>& build(const Scan& scan, double min_range_m, double max_range_m);
+  void begin(const BeamTable& beams);
+  /// The next returns of the scan, in its order.
+  void add(std::span<const Return> returns);
+  /// The features, ordered column by column from straight behind, clockwise. `scan` gives the
+  /// times; all of its returns must have been added. Lives until the next begin().
+  std::vector<Feature>& finish(const Scan& scan);
+
+  /// A whole scan at once.
+  const std::vector<Feature>& build(const Scan& scan);
 
  private:
   struct Pixel {
     float x_m, y_m, z_m;
     float flat_m;  // distance from the sensor's axis; 0: empty
-    float s;
+    float t_ns;
   };
   struct Step {
     bool connected = false;  // one surface
     bool steep = false;
   };
-  void project(const Scan& scan, double min_range_m, double max_range_m);
-  void classify_column(const BeamTable& beams, const Pixel* column);
-  void add_feature(const Pixel* column, int ring, Step below, Step above);
+  void project(std::span<const Return> returns);
+  [[nodiscard]] int column_of(float azimuth_rad) const;
+  [[nodiscard]] int place_of(int column) const;
+  void classify_until(int place);
+  void classify_column(int column, std::vector<Feature>& out) const;
+  static void add_feature(const Pixel* column, int ring, Step below, Step above,
+                          std::vector<Feature>& out);
   static Step step_between(const Pixel& lower, const Pixel& upper, float gap_rad);
 
   int columns_;
-  int rows_ = 0;
+  int margin_;  // in columns
+  float nearest2_, farthest2_;
+  BeamTable beams_;
   std::vector<Pixel> pixels_;
   std::vector<Feature> features_;
+  std::vector<Feature> last_features_;  // of columns to the right of straight behind
+
+  // A column's place counts from `first_column_`, in the order in which the sensor passes them.
+  int first_column_ = -1;   // -1: no return yet
+  int front_ = 0;           // the farthest place before the seam that a return fell into
+  int classified_ = 0;      // places before this one are done
+  bool disturbed_ = false;  // and one of them got another return
 };
 
 }  // namespace lilo::standard

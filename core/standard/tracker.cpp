@@ -43,33 +43,32 @@ SolverConfig solver_config(const StandardConfig& c) {
 
 Tracker::Tracker(const OdometryConfig& config)
     : config_(config),
-      image_(config.standard.columns),
       selection_(config.standard.ground_features, config.standard.structure_features),
       maps_(make_maps(config.standard)),
       solver_(solver_config(config.standard)),
       information_(first_information()) {}
 
-Estimate Tracker::process(const Scan& scan, StageHook hook) {
-  const std::vector<Feature>& features =
-      image_.build(scan, config_.min_range_m, config_.max_range_m);
-  hook(Stage::project);
+Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, StageHook hook) {
   const std::vector<Feature>& chosen = selection_.choose(features);
   hook(Stage::filter);
   const Timing timing{scan.start_ns, scan.end_ns, scan.motion_compensated};
   remember(timing, features, chosen);
   const Prior prior = predict(timing);
-  const Solution solution = scan_count_ == 1 ? start() : solver_.solve(chosen, maps_, prior);
-  status_ = status_of(scan, solution, chosen.size());
-  hook(Stage::align);
-  accept(timing, prior, solution);
-  grow_map(features, solution);
-  hook(Stage::update_map);
-  ++scan_count_;
-  Estimate result = estimate(scan, solution, chosen);
+  solution_ = scan_count_ == 1 ? start() : solver_.solve(chosen, maps_, prior);
+  status_ = status_of(scan, solution_, chosen.size());
+  accept(timing, prior, solution_);
   const bool in_vain = status_ == TrackingStatus::lost && chosen.size() >= kMinFeatures;
   lost_scans_ = in_vain ? lost_scans_ + 1 : 0;
-  if (lost_scans_ == kScansToGiveUp) start_anew();
+  const Estimate result = estimate(scan, solution_, chosen);
+  hook(Stage::align);
   return result;
+}
+
+void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
+  grow_map(features, solution_);
+  ++scan_count_;
+  if (lost_scans_ == kScansToGiveUp) start_anew();
+  hook(Stage::update_map);
 }
 
 std::vector<Eigen::Vector3f> Tracker::map_points() const {
@@ -192,7 +191,7 @@ Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
   e.map_surface_count = maps_.size();
   e.correspondence_count = solution.matched;
   e.iterations = solution.iterations;
-  if (scan_count_ > 1 && status_ != TrackingStatus::lost) {
+  if (scan_count_ > 0 && status_ != TrackingStatus::lost) {
     const WeakDirections weak = weak_directions(
         solution.data_information, solution.prediction_information, T_odom_sensor_.rotation);
     e.weak_directions = weak.all;

@@ -13,7 +13,9 @@ namespace lilo::standard {
 class Tracker {
  public:
   explicit Tracker(const OdometryConfig& config);
-  Estimate process(const Scan& scan, StageHook hook);
+  Estimate align(const Scan& scan, const std::vector<Feature>& features, StageHook hook);
+  /// Once after each align(), with the same features.
+  void update_map(const std::vector<Feature>& features, StageHook hook);
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
  private:
@@ -62,10 +64,10 @@ class Tracker {
                                   const std::vector<Feature>& chosen) const;
 
   OdometryConfig config_;
-  FeatureImage image_;
   Selection selection_;
   LocalMaps maps_;
   Solver solver_;
+  Solution solution_;  // of the last scan
   Sampled sampled_;
 
   Pose T_odom_start_;  // where the map in force was begun; all other poses here are from there

@@ -70,14 +70,14 @@ int rings_of(const benchmark::State& state) { return static_cast<int>(state.rang
 // Projection and classification, which the class does in one call.
 void image_features(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024);
-  for (auto _ : state) benchmark::DoNotOptimize(image.build(scan, kMinRange_m, kMaxRange_m).size());
+  standard::FeatureImage image(1024, {});
+  for (auto _ : state) benchmark::DoNotOptimize(image.build(scan).size());
 }
 
 void selection(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024);
-  const auto& all = image.build(scan, kMinRange_m, kMaxRange_m);
+  standard::FeatureImage image(1024, {});
+  const auto& all = image.build(scan);
   standard::Selection chosen(1200, 1500);
   for (auto _ : state) benchmark::DoNotOptimize(chosen.choose(all).size());
 }
@@ -96,8 +96,8 @@ void fill(standard::CellMap& map, const std::vector<standard::Feature>& features
 
 void cell_map_insert(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024);
-  const auto& features = image.build(scan, kMinRange_m, kMaxRange_m);
+  standard::FeatureImage image(1024, {});
+  const auto& features = image.build(scan);
   standard::CellMap map = empty_map(0.5F);
   for (auto _ : state) {
     fill(map, features);
@@ -111,8 +111,8 @@ void cell_map_insert(benchmark::State& state) {
 // Fits are in the cache, as for most points of a scan.
 void cell_map_find(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024);
-  const auto& features = image.build(scan, kMinRange_m, kMaxRange_m);
+  standard::FeatureImage image(1024, {});
+  const auto& features = image.build(scan);
   standard::CellMap map = empty_map(0.5F);
   fill(map, features);
   for (auto _ : state)
@@ -124,8 +124,8 @@ void cell_map_find(benchmark::State& state) {
 // One Gauss-Newton round on selected features, the sensor at rest.
 void solver_round(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024);
-  const auto& all = image.build(scan, kMinRange_m, kMaxRange_m);
+  standard::FeatureImage image(1024, {});
+  const auto& all = image.build(scan);
   standard::LocalMaps maps{empty_map(0.5F), empty_map(1.5F), empty_map(0.5F), empty_map(1.5F)};
   for (const standard::Feature& f : all) {
     const bool ground = f.kind == standard::Kind::ground;

@@ -190,9 +190,9 @@ TEST(DefaultProfile, AScanWithoutBeamsIsNoReasonToThrow) {
 TEST(FeatureImage, TellsGroundFromWalls) {
   const test::Scene scene = test::yard();
   const Scan scan = test::still_scan_of(scene, k16, {});
-  standard::FeatureImage image(1024);
+  standard::FeatureImage image(1024, {});
   int ground = 0, structure = 0, wrong = 0;
-  for (const standard::Feature& f : image.build(scan, 1.0, 100.0)) {
+  for (const standard::Feature& f : image.build(scan)) {
     const bool on_ground = std::abs(static_cast<double>(f.z_m) + 1.5) < 1e-3;
     const bool said_ground = f.kind == standard::Kind::ground;
     (said_ground ? ground : structure)++;

@@ -1,0 +1,166 @@
+// A scan's features are the same bits, whole or in parts, wherever the parts are divided.
+#include "core/feature_extractor.hpp"
+
+#include "core/odometry.hpp"
+#include "tests/core/analytic_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace lilo {
+namespace {
+
+/// Of a sensor like the HDL-64E: the beams of one firing look up to 18 degrees apart.
+Scan fanned_scan(double start_azimuth_rad, bool counter_clockwise = false) {
+  Scan scan = test::scan_of(test::yard(), test::even_beams(64, -24.8, 2.0), 1200, [](double s) {
+    return Pose{so3_exp({0, 0, 0.05 * s}), {s, 0, 0}};
+  });
+  const float sense = counter_clockwise ? -1.0F : 1.0F;
+  for (Return& r : scan.returns) {
+    const float fan_rad = 0.157F * static_cast<float>(r.ring % 9 - 4) / 4.0F;
+    const auto turn_rad = static_cast<float>(start_azimuth_rad) + fan_rad;
+    const float azimuth_rad = sense * std::atan2(r.y_m, r.x_m) + turn_rad;
+    const float flat_m = std::hypot(r.x_m, r.y_m);
+    r.x_m = flat_m * std::cos(azimuth_rad);
+    r.y_m = flat_m * std::sin(azimuth_rad);
+    r.azimuth_rad = std::atan2(r.y_m, r.x_m);
+  }
+  return scan;
+}
+
+auto values_of(const standard::Feature& f) {
+  return std::tuple(f.x_m, f.y_m, f.z_m, f.s, f.dx_m, f.dy_m, f.dz_m, f.kind, f.ring);
+}
+
+void expect_same(const ScanFeatures& a, const ScanFeatures& b, const std::string& what) {
+  ASSERT_EQ(a.all.size(), b.all.size()) << what;
+  const auto [at, other] =
+      std::mismatch(a.all.begin(), a.all.end(), b.all.begin(),
+                    [](const auto& f, const auto& g) { return values_of(f) == values_of(g); });
+  EXPECT_EQ(at - a.all.begin(), std::ssize(a.all)) << what << ": the first feature that differs";
+}
+
+ScanFeatures of_whole(const Scan& scan) {
+  FeatureExtractor extractor{OdometryConfig{}};
+  ScanFeatures features;
+  extractor.finish(scan, features);
+  return features;
+}
+
+/// The scan as it was when it had so many returns.
+Scan beginning_of(const Scan& scan, std::size_t count) {
+  Scan part = scan;
+  part.returns.resize(count);
+  part.end_ns = 0;  // not yet known
+  return part;
+}
+
+std::vector<std::size_t> random_borders(std::size_t count, std::mt19937& random) {
+  std::vector<std::size_t> borders(1 + random() % 40);
+  for (std::size_t& b : borders) b = random() % (count + 1);
+  std::sort(borders.begin(), borders.end());
+  return borders;
+}
+
+class InParts : public testing::Test {
+ protected:
+  /// One extractor for all, as in the daemon: a scan leaves nothing behind for the next.
+  void expect_same_in_parts(const Scan& scan, const std::string& what) {
+    const ScanFeatures whole = of_whole(scan);
+    EXPECT_GT(whole.all.size(), 20'000U);
+    for (int round = 0; round < 4; ++round) {
+      for (const std::size_t border : random_borders(scan.returns.size(), random_))
+        extractor_.follow(beginning_of(scan, border));
+      ScanFeatures features;
+      extractor_.finish(scan, features);
+      expect_same(features, whole, what);
+    }
+  }
+
+  std::mt19937 random_{7};
+  FeatureExtractor extractor_{OdometryConfig{}};
+};
+
+TEST_F(InParts, WhereverTheTurnBegins) {
+  for (const double start_rad : {0.0, 1.0, -1.5, 3.1})
+    expect_same_in_parts(fanned_scan(start_rad), std::to_string(start_rad));
+}
+
+TEST_F(InParts, WhicheverWayTheSensorTurns) {
+  expect_same_in_parts(fanned_scan(0.3, true), "counter-clockwise");
+}
+
+TEST_F(InParts, WithHalfOfTheViewBlocked) {
+  Scan scan = fanned_scan(0.0);
+  std::erase_if(scan.returns, [](const Return& r) { return r.y_m < 0.0F && r.x_m > -5.0F; });
+  expect_same_in_parts(scan, "blocked");
+}
+
+// A data set's scan, and a return of a wrong azimuth: no column can be done with before the end.
+TEST_F(InParts, WhateverTheOrder) {
+  Scan by_ring = fanned_scan(0.0);
+  std::stable_sort(by_ring.returns.begin(), by_ring.returns.end(),
+                   [](const Return& a, const Return& b) { return a.ring < b.ring; });
+  expect_same_in_parts(by_ring, "ring by ring");
+  Scan stray = fanned_scan(0.0);
+  std::swap(stray.returns[1000], stray.returns[60'000]);
+  std::swap(stray.returns[5'000], stray.returns[70'000]);
+  expect_same_in_parts(stray, "stray");
+}
+
+// A packet is overtaken by a few or by many others, and put in its place when it comes.
+TEST_F(InParts, WithPacketsThatWereOvertaken) {
+  const Scan scan = fanned_scan(0.0);
+  const ScanFeatures whole = of_whole(scan);
+  for (const std::size_t overtaken_by : {400UL, 1'200UL, 5'000UL, 30'000UL}) {
+    const auto at = static_cast<std::ptrdiff_t>(random_() % 40'000);
+    Scan late = scan;
+    late.returns.erase(late.returns.begin() + at, late.returns.begin() + at + 384);
+    const auto came = static_cast<std::size_t>(at) + overtaken_by;
+    for (std::size_t n = 0; n < came; n += 384) extractor_.follow(beginning_of(late, n));
+    extractor_.follow(beginning_of(late, came));
+    extractor_.inserted(static_cast<std::size_t>(at));
+    for (std::size_t n = came + 384; n < scan.returns.size(); n += 384)
+      extractor_.follow(beginning_of(scan, n));
+    ScanFeatures features;
+    extractor_.finish(scan, features);
+    expect_same(features, whole, "overtaken by " + std::to_string(overtaken_by));
+  }
+}
+
+// The daemon's way and that of the tools.
+TEST(FeatureExtractor, MakesTheSameTrajectoryInParts) {
+  for (const Profile profile : {Profile::standard, Profile::paper}) {
+    OdometryConfig config;
+    config.profile = profile;
+    Odometry whole(config), in_parts(config);
+    FeatureExtractor extractor(config);
+    ScanFeatures features;
+    std::mt19937 random(3);
+    for (std::uint64_t k = 0; k < 8; ++k) {
+      const auto at = [&](double s) {
+        const double x_m = 0.5 * (static_cast<double>(k) + s);
+        return Pose{so3_exp({0.0, 0.0, 0.02 * x_m}), {x_m - 5.0, 0.0, 0.0}};
+      };
+      const Scan scan = test::scan_of(test::yard(), test::even_beams(16, -15.0, 15.0), 900, at, k);
+      const Estimate expected = whole.process(scan);
+      for (const std::size_t border : random_borders(scan.returns.size(), random))
+        extractor.follow(beginning_of(scan, border));
+      extractor.finish(scan, features);
+      const Estimate found = in_parts.align(scan, features);
+      in_parts.update_map(features);
+      EXPECT_EQ(found.T_odom_sensor.translation_m, expected.T_odom_sensor.translation_m);
+      EXPECT_EQ(found.T_odom_sensor.rotation.coeffs(), expected.T_odom_sensor.rotation.coeffs());
+      EXPECT_EQ(found.status, expected.status);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lilo
