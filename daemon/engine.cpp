@@ -50,8 +50,9 @@ SensorConfig sensor_config(const Config& config) {
   return sensor;
 }
 
-ScanRing& prepared(ScanRing& scans, SensorModel model) {
-  scans.for_each_slot([=](ScanSlot& slot) { prepare_slot(slot, model); });
+ScanRing& prepared(ScanRing& scans, const Config& config) {
+  scans.for_each_slot(
+      [&](ScanSlot& slot) { prepare_slot(slot, config.sensor.model, config.odometry); });
   return scans;
 }
 
@@ -61,7 +62,7 @@ Engine::Engine(const Config& config, std::unique_ptr<PacketSource> source)
     : realtime_(config.realtime),
       scans_(static_cast<std::size_t>(config.realtime.ring_slots)),
       reports_(kReportSlots),
-      receiver_(std::move(source), sensor_config(config), prepared(scans_, config.sensor.model),
+      receiver_(std::move(source), sensor_config(config), config.odometry, prepared(scans_, config),
                 scan_ready_, counters_),
       worker_(config.odometry, scans_, scan_ready_, reports_, report_ready_, counters_) {}
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/estimate.hpp"
+#include "core/feature_extractor.hpp"
 #include "core/odometry.hpp"
 #include "core/scan.hpp"
 #include "drivers/scan_builder.hpp"
@@ -17,6 +18,8 @@ namespace lilo {
 
 struct ScanSlot {
   Scan scan;
+  ScanFeatures features;            ///< of the whole scan
+  std::int64_t extraction_ns = 0;   ///< the receiver's time for them
   std::int64_t last_packet_ns = 0;  ///< monotonic time at which the packet that ended it arrived
 };
 
@@ -24,8 +27,8 @@ struct PoseReport {
   Estimate estimate;
   std::uint64_t seq = 0;            ///< poses of this odometry before this one
   std::int64_t last_packet_ns = 0;  ///< monotonic, as in ScanSlot
-  std::int64_t processing_ns = 0;   ///< time in Odometry::process
-  std::array<std::int64_t, kStageCount> stage_ns{};
+  std::int64_t processing_ns = 0;   ///< the worker's time for this pose, and before it for the map
+  std::array<std::int64_t, kStageCount> stage_ns{};  ///< project: the receiver's; map: of the last
   PacketCounts packets;
   ClockSource clock = ClockSource::host;
   bool scan_complete = true;

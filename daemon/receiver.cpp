@@ -59,14 +59,16 @@ SourceCounts SharedDriverCounts::source() const {
 }
 
 Receiver::Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sensor,
-                   ScanRing& scans, Wakeup& scan_ready, PipelineCounters& counters)
+                   const OdometryConfig& odometry, ScanRing& scans, Wakeup& scan_ready,
+                   PipelineCounters& counters)
     : source_(std::move(source)),
       scans_(scans),
       scan_ready_(scan_ready),
       counters_(counters),
       writing_(scans.reserve()),
+      extractor_(odometry),
       builder_(sensor, writing_->scan, *this) {
-  prepare_slot(spare_, sensor.model);
+  prepare_slot(spare_, sensor.model, odometry);
 }
 
 void Receiver::share_counts() {
@@ -88,6 +90,7 @@ void Receiver::run() {
     if (result == ReadResult::packet) {
       last_packet_ns_.store(arrival_ns(packet), std::memory_order_relaxed);
       builder_.feed(packet);
+      follow_scan();
       if (++packets % kShareEvery == 0) share_counts();
     } else {
       share_counts();
@@ -96,12 +99,20 @@ void Receiver::run() {
   }
 }
 
+void Receiver::follow_scan() {
+  const std::int64_t start_ns = monotonic_ns();
+  extractor_.follow(writing_->scan);
+  writing_->extraction_ns += monotonic_ns() - start_ns;
+}
+
 // The scan just written goes to the worker, and the next free slot is written. With all slots
 // taken, the spare one is written instead and the worker told; should it still be at work when the
 // spare is full too, that scan is given up.
 Scan& Receiver::exchange(Scan& finished) {
+  const std::int64_t start_ns = monotonic_ns();
+  extractor_.finish(finished, writing_->features);
+  writing_->extraction_ns += monotonic_ns() - start_ns;
   most_returns_ = std::max(most_returns_, finished.returns.size());
-  share_counts();
   add(counters_.scans_received);
   writing_->last_packet_ns = last_packet_ns_.load(std::memory_order_relaxed);
   ScanSlot* slot = writing_;
@@ -116,24 +127,30 @@ Scan& Receiver::exchange(Scan& finished) {
   } else {
     add(counters_.scans_overrun);
   }
+  share_counts();
   writing_ = scans_.reserve();
   if (writing_ == nullptr) {
     counters_.behind.store(true, std::memory_order_release);
     writing_ = &spare_;
   }
   writing_->scan.clear();
+  writing_->extraction_ns = 0;
   // What the largest scan so far needed: one that has to grow by itself would double.
   if (writing_->scan.returns.capacity() < most_returns_)
     writing_->scan.returns.reserve(most_returns_ + most_returns_ / 32);
   return writing_->scan;
 }
 
-void prepare_slot(ScanSlot& slot, SensorModel model) {
+void prepare_slot(ScanSlot& slot, SensorModel model, const OdometryConfig& odometry) {
   // One return a firing at 10 Hz: 28 928 and 133 333. What an unknown model, dual returns or a
   // slower head need more, the slots take in their first turn and keep.
   constexpr std::size_t kVlp16Returns = 32'000, kHdl64eReturns = 140'000;
   slot.scan.returns.resize(model == SensorModel::hdl64e ? kHdl64eReturns : kVlp16Returns);
   slot.scan.clear();
+  if (odometry.profile != Profile::standard) return;
+  const std::size_t rings = model == SensorModel::hdl64e ? 64 : 16;
+  slot.features.all.resize(rings * static_cast<std::size_t>(odometry.standard.columns));
+  slot.features.all.clear();
 }
 
 }  // namespace lilo

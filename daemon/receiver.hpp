@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/feature_extractor.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/wakeup.hpp"
 #include "drivers/packet_source.hpp"
@@ -24,12 +25,14 @@ class SharedDriverCounts {
   std::array<std::atomic<std::uint64_t>, 5> source_{};
 };
 
-/// Packets to scans, on a thread of its own. Writes straight into ring slots. When the worker holds
+/// Packets to scans and their features, on a thread of its own. The features are found while the
+/// scan is measured, packet by packet. Writes straight into ring slots. When the worker holds
 /// them all, the receiver writes into a spare one and asks the worker to skip to the newest scan.
 class Receiver : private ScanSink {
  public:
-  Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sensor, ScanRing& scans,
-           Wakeup& scan_ready, PipelineCounters& counters);
+  Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sensor,
+           const OdometryConfig& odometry, ScanRing& scans, Wakeup& scan_ready,
+           PipelineCounters& counters);
 
   /// Until counters.stop, or the end of a source that has one. No allocation once every slot has
   /// held a scan.
@@ -45,6 +48,8 @@ class Receiver : private ScanSink {
 
  private:
   Scan& exchange(Scan& finished) override;
+  void inserted(std::size_t index) override { extractor_.inserted(index); }
+  void follow_scan();
   void share_counts();
 
   std::unique_ptr<PacketSource> source_;
@@ -53,6 +58,7 @@ class Receiver : private ScanSink {
   PipelineCounters& counters_;
   ScanSlot spare_;
   ScanSlot* writing_;
+  FeatureExtractor extractor_;
   std::size_t most_returns_ = 0;  // of any scan
   std::atomic<std::int64_t> last_packet_ns_{0};
   std::atomic<double> calibration_progress_{1.0};
@@ -60,7 +66,7 @@ class Receiver : private ScanSink {
   ScanBuilder builder_;
 };
 
-/// Reserves and touches the memory a scan of this sensor needs.
-void prepare_slot(ScanSlot& slot, SensorModel model);
+/// Reserves and touches the memory that a scan of this sensor and its features need.
+void prepare_slot(ScanSlot& slot, SensorModel model, const OdometryConfig& odometry);
 
 }  // namespace lilo

@@ -2,6 +2,7 @@
 
 #include "daemon/clock.hpp"
 
+#include <numeric>
 #include <sys/resource.h>
 
 namespace lilo {
@@ -18,20 +19,17 @@ std::uint64_t minor_faults() {
   return static_cast<std::uint64_t>(usage.ru_minflt);
 }
 
-/// Time between the ends of the stages. A stage that ends twice in a scan counts both.
-struct StageTimer {
-  std::array<std::int64_t, kStageCount> stage_ns{};
-  std::int64_t last_ns = monotonic_ns();
-
-  static void done(void* context, Stage stage) {
-    auto& timer = *static_cast<StageTimer*>(context);
-    const std::int64_t now = monotonic_ns();
-    timer.stage_ns[static_cast<std::size_t>(stage)] += now - timer.last_ns;
-    timer.last_ns = now;
-  }
-};
-
 }  // namespace
+
+StageHook StageTimer::hook() {
+  const auto done = [](void* context, Stage stage) {
+    auto& timer = *static_cast<StageTimer*>(context);
+    const std::int64_t now_ns = monotonic_ns();
+    timer.stage_ns[static_cast<std::size_t>(stage)] += now_ns - timer.last_ns;
+    timer.last_ns = now_ns;
+  };
+  return {done, this};
+}
 
 Worker::Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready,
                ReportRing& reports, Wakeup& report_ready, PipelineCounters& counters)
@@ -54,7 +52,8 @@ void Worker::run() {
     }
     const std::uint64_t resets = counters_.resets_asked.load(std::memory_order_acquire);
     if (resets != resets_) begin_again(resets);
-    process(*slot);
+    align(*slot);
+    update_map(*slot);
     scans_.release();
     if (counters_.behind.exchange(false, std::memory_order_acquire)) skip_to_newest();
   }
@@ -82,30 +81,38 @@ void Worker::skip_to_newest() {
   }
 }
 
-void Worker::process(const ScanSlot& slot) {
-  StageTimer timer;
-  const std::int64_t start_ns = timer.last_ns;
-  const Estimate estimate = odometry_->process(slot.scan, {StageTimer::done, &timer});
-  const std::int64_t end_ns = monotonic_ns();
-  PoseReport* report = reports_.reserve();
-  if (report != nullptr) {
-    *report = {.estimate = estimate,
-               .seq = seq_,
-               .last_packet_ns = slot.last_packet_ns,
-               .processing_ns = end_ns - start_ns,
-               .stage_ns = timer.stage_ns,
-               .packets = slot.scan.packets,
-               .clock = slot.scan.clock,
-               .scan_complete = slot.scan.complete,
-               .resets = resets_,
-               .worker_minor_faults = minor_faults()};
-    reports_.commit();
-    report_ready_.signal();
-  } else {
-    add(counters_.reports_dropped);
-  }
+void Worker::align(const ScanSlot& slot) {
+  timer_.last_ns = monotonic_ns();
+  report(slot, odometry_->align(slot.scan, slot.features, timer_.hook()));
   ++seq_;
   add(counters_.scans_processed);
+}
+
+// The stages of the next report begin here: the map is of no use to who waits for this pose.
+void Worker::update_map(const ScanSlot& slot) {
+  timer_ = {.last_ns = monotonic_ns()};
+  odometry_->update_map(slot.features, timer_.hook());
+}
+
+void Worker::report(const ScanSlot& slot, const Estimate& estimate) {
+  PoseReport* report = reports_.reserve();
+  if (report == nullptr) {
+    add(counters_.reports_dropped);
+    return;
+  }
+  *report = {.estimate = estimate,
+             .seq = seq_,
+             .last_packet_ns = slot.last_packet_ns,
+             .processing_ns = std::reduce(timer_.stage_ns.begin(), timer_.stage_ns.end()),
+             .stage_ns = timer_.stage_ns,
+             .packets = slot.scan.packets,
+             .clock = slot.scan.clock,
+             .scan_complete = slot.scan.complete,
+             .resets = resets_,
+             .worker_minor_faults = minor_faults()};
+  report->stage_ns[static_cast<std::size_t>(Stage::project)] += slot.extraction_ns;
+  reports_.commit();
+  report_ready_.signal();
 }
 
 }  // namespace lilo

@@ -4,13 +4,22 @@
 #include "daemon/pipeline.hpp"
 #include "daemon/wakeup.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
 namespace lilo {
 
+/// The worker's time in each stage. A stage that ends twice in a scan counts both.
+struct StageTimer {
+  std::array<std::int64_t, kStageCount> stage_ns{};
+  std::int64_t last_ns = 0;  ///< monotonic, when the last stage ended
+
+  StageHook hook();
+};
+
 /// Scans to poses, on a thread of its own. Never logs, never locks; allocates only where
-/// Odometry::process does, for a reset, and to copy the map.
+/// Odometry does, for a reset, and to copy the map.
 class Worker {
  public:
   Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready, ReportRing& reports,
@@ -27,7 +36,9 @@ class Worker {
   void copy_map(std::uint64_t asked);
   void begin_again(std::uint64_t resets);
   void skip_to_newest();
-  void process(const ScanSlot& slot);
+  void align(const ScanSlot& slot);
+  void report(const ScanSlot& slot, const Estimate& estimate);
+  void update_map(const ScanSlot& slot);
 
   OdometryConfig config_;
   std::optional<Odometry> odometry_;
@@ -38,6 +49,7 @@ class Worker {
   PipelineCounters& counters_;
   std::uint64_t seq_ = 0;
   std::uint64_t resets_ = 0;
+  StageTimer timer_;
   MapCopy map_copy_;
 };
 

@@ -80,6 +80,7 @@ bool ScanAssembler::add_late(const PacketDecoder& decoder, std::int64_t line_ns)
     const auto old_size = static_cast<std::ptrdiff_t>(returns.size());
     decoder.append(i, t_ns, returns);
     std::rotate(returns.begin() + place_index, returns.begin() + old_size, returns.end());
+    sink_.inserted(static_cast<std::size_t>(place_index));
     coverage_.mark(phase_of(columns[i].azimuth_ticks));
     scan_end_ns_ = std::max(scan_end_ns_, line_ns + columns[i].last_ns);
   }

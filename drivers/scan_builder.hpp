@@ -12,7 +12,8 @@ namespace lilo {
 
 /// Takes finished scans. exchange() is called once a revolution, in the middle of a packet if the
 /// cut lies there, and returns the (cleared) scan to write next: a ring slot in the daemon, the
-/// same object again in tools. No copy of returns is ever made.
+/// same object again in tools. No copy of returns is ever made. Until then returns are only added
+/// at the end of the scan being written, but for a packet that was overtaken.
 class ScanSink {
  public:
   ScanSink() = default;
@@ -20,6 +21,8 @@ class ScanSink {
   ScanSink& operator=(const ScanSink&) = delete;
   virtual ~ScanSink() = default;
   virtual Scan& exchange(Scan& finished) = 0;
+  /// The returns of an overtaken packet were inserted at `index` into the scan being written.
+  virtual void inserted(std::size_t /*index*/) {}
 };
 
 /// Totals since the start. Every byte that came in is in one of these.

@@ -65,12 +65,12 @@ class TakenSource : public PacketSource {
 // Packets to scans in the ring: nothing after every slot has been written once.
 TEST(Allocation, ReceiverHasNoneOnceWarm) {
   ScanRing scans(4);
-  scans.for_each_slot([](ScanSlot& slot) { prepare_slot(slot, SensorModel::vlp16); });
+  scans.for_each_slot([](ScanSlot& slot) { prepare_slot(slot, SensorModel::vlp16, {}); });
   Wakeup ready(Wakeup::Mode::blocking);
   PipelineCounters counters;
   auto owned = std::make_unique<TakenSource>(4000, 800, scans);
   const TakenSource& source = *owned;
-  Receiver receiver(std::move(owned), {.model = SensorModel::vlp16}, scans, ready, counters);
+  Receiver receiver(std::move(owned), {.model = SensorModel::vlp16}, {}, scans, ready, counters);
   receiver.run();
   EXPECT_GT(counters.scans_received, 45U);
   EXPECT_EQ(allocations - source.allocations_when_warm, 0U);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -22,12 +23,26 @@ std::unique_ptr<PacketSource> turns(int turns) {
   return std::make_unique<RoundRoomSource>(static_cast<std::uint64_t>(packets));
 }
 
+/// Those found while the scan was measured are those of the scan as it lies in the slot.
+void expect_features_of_whole_scan(const ScanSlot& slot) {
+  FeatureExtractor extractor{OdometryConfig{}};
+  ScanFeatures whole;
+  extractor.finish(slot.scan, whole);
+  EXPECT_GT(whole.all.size(), 10'000U);
+  ASSERT_EQ(slot.features.all.size(), whole.all.size()) << "scan " << slot.scan.index;
+  const auto same = [](const standard::Feature& a, const standard::Feature& b) {
+    return a.x_m == b.x_m && a.y_m == b.y_m && a.z_m == b.z_m && a.s == b.s && a.kind == b.kind;
+  };
+  EXPECT_TRUE(std::equal(whole.all.begin(), whole.all.end(), slot.features.all.begin(), same))
+      << "scan " << slot.scan.index;
+}
+
 TEST(Receiver, HandsOnEveryScanInOrder) {
   ScanRing scans(32);
   Wakeup ready(Wakeup::Mode::blocking);
   PipelineCounters counters;
   const std::int64_t before = monotonic_ns();
-  Receiver receiver(turns(12), kVlp16, scans, ready, counters);
+  Receiver receiver(turns(12), kVlp16, {}, scans, ready, counters);
   receiver.run();
   ready.wait();
   // The first revolution starts at azimuth 0, which is the cut: it may or may not be counted whole.
@@ -45,6 +60,7 @@ TEST(Receiver, HandsOnEveryScanInOrder) {
     EXPECT_NEAR(static_cast<double>(slot->scan.end_ns - slot->scan.start_ns), 0.1e9, 0.2e6);
     EXPECT_GE(slot->last_packet_ns, before);
     EXPECT_LE(slot->last_packet_ns, monotonic_ns());
+    expect_features_of_whole_scan(*slot);
     end_ns = slot->scan.end_ns;
     scans.release();
   }
@@ -56,7 +72,7 @@ TEST(Receiver, FullRingIsCountedAndToldToTheWorker) {
   ScanRing scans(3);
   Wakeup ready(Wakeup::Mode::blocking);
   PipelineCounters counters;
-  Receiver receiver(turns(12), kVlp16, scans, ready, counters);
+  Receiver receiver(turns(12), kVlp16, {}, scans, ready, counters);
   receiver.run();
   EXPECT_EQ(scans.size(), 3U);
   EXPECT_TRUE(counters.behind);
@@ -86,7 +102,7 @@ TEST(Receiver, SaysHowMuchOfTheCalibrationItHas) {
   Wakeup ready(Wakeup::Mode::blocking);
   PipelineCounters counters;
   Receiver receiver(std::make_unique<FirstPackets>(open_pcap(capture), 2000),
-                    {.model = SensorModel::hdl64e}, scans, ready, counters);
+                    {.model = SensorModel::hdl64e}, {}, scans, ready, counters);
   EXPECT_EQ(receiver.calibration_progress(), 1.0);
   receiver.run();
   EXPECT_EQ(scans.size(), 0U);
@@ -122,11 +138,12 @@ TEST(Receiver, GoesOnWithTheNewestScan) {
     while (const ScanSlot* slot = scans.front()) {
       taken.push_back(slot->scan.index);
       EXPECT_TRUE(slot->scan.complete);
+      expect_features_of_whole_scan(*slot);  // of no scan that was given up half-way
       scans.release();
     }
   };
   const auto at = static_cast<std::uint64_t>(6.5 * RoundRoomSource::kPacketsPerTurn);
-  Receiver receiver(std::make_unique<InterruptedSource>(turns(9), at, take_all), kVlp16, scans,
+  Receiver receiver(std::make_unique<InterruptedSource>(turns(9), at, take_all), kVlp16, {}, scans,
                     ready, counters);
   receiver.run();
   take_all();
@@ -136,6 +153,50 @@ TEST(Receiver, GoesOnWithTheNewestScan) {
   for (std::size_t k = 4; k < taken.size(); ++k) EXPECT_EQ(taken[k], taken[k - 1] + 1);
   EXPECT_EQ(taken[3] - taken[2] - 1, counters.scans_overrun) << "the gap is what was counted";
   EXPECT_GT(counters.scans_overrun, 0U);
+}
+
+/// A network in which some packets are overtaken, by up to eight others.
+class OvertakingSource : public PacketSource {
+ public:
+  explicit OvertakingSource(std::unique_ptr<PacketSource> source) : source_(std::move(source)) {}
+  ReadResult read(PacketView& packet, std::chrono::milliseconds timeout) override {
+    if (held_until_ != 0 && held_until_ <= read_) {
+      held_until_ = 0;
+      packet = held_;
+      packet.payload = bytes_;
+      return ReadResult::packet;
+    }
+    const ReadResult result = source_->read(packet, timeout);
+    if (++read_ % 13 != 0 || held_until_ != 0 || result != ReadResult::packet) return result;
+    held_ = packet;
+    bytes_.assign(packet.payload.begin(), packet.payload.end());
+    held_until_ = read_ + 1 + read_ % 8;
+    return read(packet, timeout);
+  }
+  [[nodiscard]] SourceCounts counts() const override { return source_->counts(); }
+
+ private:
+  std::unique_ptr<PacketSource> source_;
+  PacketView held_;
+  std::vector<std::byte> bytes_;
+  std::uint64_t read_ = 0, held_until_ = 0;
+};
+
+TEST(Receiver, FindsTheFeaturesOfPacketsThatWereOvertaken) {
+  ScanRing scans(32);
+  Wakeup ready(Wakeup::Mode::blocking);
+  PipelineCounters counters;
+  Receiver receiver(std::make_unique<OvertakingSource>(turns(12)), kVlp16, {}, scans, ready,
+                    counters);
+  receiver.run();
+  ASSERT_GE(scans.size(), 10U);
+  std::uint32_t overtaken = 0;
+  while (const ScanSlot* slot = scans.front()) {
+    expect_features_of_whole_scan(*slot);
+    overtaken += slot->scan.packets.reordered;
+    scans.release();
+  }
+  EXPECT_GT(overtaken, 30U);
 }
 
 }  // namespace

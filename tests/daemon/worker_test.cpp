@@ -17,7 +17,7 @@ class WorkerTest : public testing::Test {
  protected:
   WorkerTest() {
     const auto packets = static_cast<std::uint64_t>(RoundRoomSource::kPacketsPerTurn * 7.5);
-    Receiver(std::make_unique<RoundRoomSource>(packets), {.model = SensorModel::vlp16}, scans_,
+    Receiver(std::make_unique<RoundRoomSource>(packets), {.model = SensorModel::vlp16}, {}, scans_,
              scan_ready_, counters_)
         .run();
     counters_.behind = false;
