@@ -5,6 +5,7 @@
 #include "tools/sim/world.hpp"
 
 #include <numbers>
+#include <utility>
 
 namespace lilo::sim {
 namespace {
@@ -38,8 +39,8 @@ void add_walkers(World& world, Random& random, double length_m) {
 }
 
 /// A park around a path.
-World planted(const Route& route, Random& random, std::uint64_t seed, double length_m) {
-  World world{route, {}, {}, {}};
+World planted(Route route, Random& random, std::uint64_t seed, double length_m) {
+  World world{std::move(route), {}, {}, {}};
   world.vehicle = {.wheelbase_m = 0.6,
                    .track_m = 0.5,
                    .sensor_height_m = 0.9,

@@ -14,11 +14,11 @@ struct CellResult {
   Cell cell;
   int beams = 0;
   double scans = 0.0;
-  double not_tracked = 0.0;            ///< scans said to be degraded or lost
-  double path_m = 0.0;                 ///< true path
-  std::string segment_lengths_m;       ///< "100-800"; empty: the path is too short for the metric
-  double segments = 0.0;               ///< how many the errors are a mean of
-  double t_percent = kUnknown;         ///< KITTI translation error
+  double not_tracked = 0.0;       ///< scans said to be degraded or lost
+  double path_m = 0.0;            ///< true path
+  std::string segment_lengths_m;  ///< "100-800", "100"; empty: the path is too short for the metric
+  double segments = 0.0;          ///< how many the errors are a mean of
+  double t_percent = kUnknown;    ///< KITTI translation error
   double r_deg_per_100m = kUnknown;    ///< KITTI rotation error
   double ate_m = kUnknown;             ///< absolute trajectory error, rmse
   double edges = 0.0, surfaces = 0.0;  ///< features a scan, mean

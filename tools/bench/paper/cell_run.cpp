@@ -91,6 +91,7 @@ void add_times(const OdometryRun& run, CellResult& result) {
 }
 
 std::string range_text(const std::vector<double>& lengths_m) {
+  if (lengths_m.size() == 1) return fmt::format("{:g}", lengths_m.front());
   return fmt::format("{:g}-{:g}", lengths_m.front(), lengths_m.back());
 }
 

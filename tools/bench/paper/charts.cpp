@@ -86,7 +86,8 @@ Chart box_chart(const std::string& folder, int rows, std::size_t sets) {
       name + ".png", fmt::format("Figure 9a, images of {} rows", rows),
       fmt::format("Image sizes and feature groups over {}: quartiles, whiskers to 1.5 box "
                   "heights; circle: mean, dot: a set, cross: an outlier. Drawn from the lines of "
-                  "boxes.csv and box_samples.csv whose column rows is {}.",
+                  "boxes.csv and box_samples.csv whose column rows is {}; paths too short for the "
+                  "metric have times only.",
                   sets == 1 ? "the one set of this height" : "the sets of this height", rows)};
 }
 
@@ -196,12 +197,14 @@ Chart path_chart(const std::string& folder, const Cell& chosen) {
       "set yrange [{:.3f}:{:.3f}]\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n",
       area.low.x(), area.high.x(), area.low.y(), area.high.y());
   script += fmt::format(
-      "plot '{}' using 'true_x_m':'true_y_m' with lines lw 6 lc rgb '#c4c4c4' "
+      "plot '{}' using 'true_x_m':'true_y_m' with lines lw 9 lc rgb '#d4d4d4' "
       "title 'truth'",
       lines[0].file);
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    script += fmt::format(", \\\n  '{}' using 'x_m':'y_m' with lines lw 1.6 lc rgb '{}' title '{}'",
-                          lines[k].file, kColors.at(k), lines[k].title);
+    // Each on top of the one before and thinner, so that paths that agree are all seen.
+    script +=
+        fmt::format(", \\\n  '{}' using 'x_m':'y_m' with lines lw {} lc rgb '{}' title '{}'",
+                    lines[k].file, std::array{4.0, 2.6, 1.2}.at(k), kColors.at(k), lines[k].title);
   }
   run_gnuplot(folder, name, script + "\n");
   return {name + ".png", "Figures 9b and 10, " + chosen.set,
