@@ -28,8 +28,9 @@ enum class Deskew : std::uint8_t {
   two_stage,  ///< F-LOAM, the paper: the map gets the scan deskewed by the motion that was found
 };
 
-/// The paper's choices, and ours where it is silent: thresholds, Huber's kernel, how often the map
-/// grows and how often correspondences are sought. core/README.md says what they are worth.
+/// The paper's choices, and ours where it is silent: thresholds, voxel sizes, Huber's kernel, how
+/// often the map grows and how often correspondences are sought. core/README.md says what the
+/// choices are worth.
 struct PaperConfig {
   int columns = 720;  ///< image width N: 360, 720 or 1024 in the paper
   /// Image height that sensors with fewer beams are interpolated to: 16 beams to 32 rows in the
@@ -55,7 +56,7 @@ struct PaperConfig {
   double keyframe_rad = 2.0 * std::numbers::pi / 180.0;
   /// A feature keeps its line or plane until it has moved by this part of the neighbourhood, over
   /// which the neighbourhood hardly changes. 0: sought anew at every step.
-  double search_again = 0.15;
+  double search_again = 0.25;
 };
 
 /// The default profile: features of the image plane on a map of Gaussian cells.

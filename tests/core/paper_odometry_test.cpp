@@ -126,7 +126,7 @@ TEST(PaperOdometry, KeepingMatchesForSmallMovesHardlyChangesTheAnswer) {
     odometry.process(test::still_scan_of(test::yard(), k16, {}));
     return odometry.process(second_scan(test::yard(), step)).T_odom_sensor;
   };
-  const Pose difference = found(0.0).inverse() * found(0.15);
+  const Pose difference = found(0.0).inverse() * found(PaperConfig{}.search_again);
   EXPECT_LT(difference.translation_m.norm(), 0.01);
   EXPECT_GT(difference.translation_m.norm(), 0.0);
 }
