@@ -45,14 +45,16 @@ class SpscRing {
   /// Consumer. The oldest slot, or nullptr when the ring is empty. Repeats until release().
   [[nodiscard]] T* front() noexcept {
     const std::size_t released = released_.load(std::memory_order_relaxed);
-    if (released == written_seen_) {
+    // Beyond it: slots were released without a look at them.
+    if (released >= written_seen_) {
       written_seen_ = written_.load(std::memory_order_acquire);
       if (released == written_seen_) return nullptr;
     }
     return &slots_[released % slots_.size()];
   }
 
-  /// Consumer. Gives the slot back to the producer.
+  /// Consumer. Gives the oldest slot back to the producer; without front(), only while size() says
+  /// that there is one.
   void release() noexcept {
     released_.store(released_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }

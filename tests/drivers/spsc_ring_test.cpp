@@ -49,6 +49,23 @@ TEST(SpscRing, BehavesAsABoundedQueue) {
   }
 }
 
+// As a worker does that skips what it is too late for: the next look must not go beyond the end.
+TEST(SpscRing, SlotsMayBeReleasedUnseen) {
+  SpscRing<int> ring(4);
+  ASSERT_TRUE(push(ring, 0));
+  ASSERT_NE(ring.front(), nullptr);
+  for (int value = 1; value < 4; ++value) ASSERT_TRUE(push(ring, value));
+  while (ring.size() > 1) ring.release();
+  int value = -1;
+  ASSERT_TRUE(pop(ring, value));
+  EXPECT_EQ(value, 3);
+  EXPECT_EQ(ring.front(), nullptr);
+  ASSERT_TRUE(push(ring, 4));
+  ASSERT_TRUE(pop(ring, value));
+  EXPECT_EQ(value, 4);
+  EXPECT_EQ(ring.size(), 0U);
+}
+
 TEST(SpscRing, FillsAndEmptiesFromEveryIndex) {
   constexpr std::size_t kCapacity = 5;
   for (std::size_t shift = 0; shift < 2 * kCapacity; ++shift) {
