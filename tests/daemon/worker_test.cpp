@@ -89,5 +89,53 @@ TEST_F(WorkerTest, NeverWaitsForThePublisher) {
   EXPECT_EQ(reports().back().seq, 3U);
 }
 
+/// Both threads at once, as fast as they go. Slots: of the ring between them.
+class ReceiverAndWorker : public testing::TestWithParam<std::size_t> {};
+
+// Whatever was dropped on the way, the poses are those that one thread makes of the same scans.
+TEST_P(ReceiverAndWorker, MakeThePosesOfOneThread) {
+  constexpr auto kPackets = static_cast<std::uint64_t>(RoundRoomSource::kPacketsPerTurn * 20.5);
+  const SensorConfig sensor{.model = SensorModel::vlp16};
+  Wakeup scan_ready(Wakeup::Mode::blocking), report_ready(Wakeup::Mode::polled);
+
+  PipelineCounters counters;
+  ScanRing scans(GetParam());
+  ReportRing reports(32);
+  Receiver receiver(std::make_unique<RoundRoomSource>(kPackets), sensor, {}, scans, scan_ready,
+                    counters);
+  Worker worker({}, scans, scan_ready, reports, report_ready, counters);
+  std::thread working([&] { worker.run(); });
+  std::thread receiving([&] { receiver.run(); });
+  receiving.join();
+  while (scans.size() > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  counters.stop = true;
+  scan_ready.signal();
+  working.join();
+  EXPECT_EQ(counters.scans_processed + counters.scans_skipped + counters.scans_overrun,
+            counters.scans_received);
+
+  PipelineCounters all_counters;
+  ScanRing all(32);
+  Receiver(std::make_unique<RoundRoomSource>(kPackets), sensor, {}, all, scan_ready, all_counters)
+      .run();
+  Odometry odometry{OdometryConfig{}};
+  std::size_t poses = 0;
+  for (const PoseReport* report = reports.front(); report != nullptr; report = reports.front()) {
+    const Estimate& found = report->estimate;
+    while (all.front()->scan.index != found.scan_index) all.release();
+    const Estimate expected = odometry.process(all.front()->scan);
+    EXPECT_EQ(found.T_odom_sensor.translation_m, expected.T_odom_sensor.translation_m);
+    EXPECT_EQ(found.T_odom_sensor.rotation.coeffs(), expected.T_odom_sensor.rotation.coeffs());
+    EXPECT_EQ(found.twist.linear_mps, expected.twist.linear_mps);
+    EXPECT_EQ(found.residual_rms_sigma, expected.residual_rms_sigma);
+    ++poses;
+    reports.release();
+  }
+  EXPECT_EQ(poses, counters.scans_processed);
+  EXPECT_GE(poses, 2U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Slots, ReceiverAndWorker, testing::Values(2, 4, 32));
+
 }  // namespace
 }  // namespace lilo
