@@ -3,9 +3,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <ifaddrs.h>
+#include <iterator>
+#include <map>
 #include <memory>
+#include <sstream>
 
 /// The clients we give away, against the daemon itself.
 namespace lilo {
@@ -47,6 +52,17 @@ class Turning {
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
+
+/// One more sink, by a reload.
+void add_sink(Lilod& lilod, const std::string& endpoint) {
+  std::ostringstream text;
+  text << std::ifstream(lilod.config_path()).rdbuf();
+  std::string yaml = text.str();
+  yaml.insert(yaml.find("sinks: [") + 8, '"' + endpoint + "\", ");
+  std::ofstream(lilod.config_path()) << yaml;
+  lilod.process().signal(SIGHUP);
+  EXPECT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
+}
 
 /// Runs an example that prints ten lines "seq status x y z".
 void expect_ten_poses(std::vector<std::string> command, const std::string& host,
@@ -131,6 +147,80 @@ TEST(Clients, CppClientReadsEveryField) {
   EXPECT_DOUBLE_EQ(pose.orientation[3], m["orientation"]["w"].get<double>());
   EXPECT_EQ(pose.has_twist, m.contains("twist"));
   EXPECT_EQ(pose.has_covariance, m.contains("covariance"));
+}
+
+/// The series PlotJuggler's UDP server makes of a datagram, by its nlohmann_parsers.cpp: numbers
+/// and booleans under their path; strings and null are passed over.
+void add_series(const json& value, const std::string& path, std::map<std::string, double>& out) {
+  if (value.is_object()) {
+    for (const auto& [key, inner] : value.items())
+      add_series(inner, std::string(path).append("/").append(key), out);
+  } else if (value.is_array()) {
+    for (std::size_t k = 0; k < value.size(); ++k)
+      add_series(value[k], path + '[' + std::to_string(k) + ']', out);
+  } else if (value.is_boolean()) {
+    out[path] = value.get<bool>() ? 1.0 : 0.0;
+  } else if (value.is_number()) {
+    out[path] = value.get<double>();
+  }
+}
+
+// A fixed sink and nothing else: every datagram has the stamp it was told to look for, as a number
+// at the top, and no series mixes two kinds of message.
+TEST(PlotJuggler, ReadsAllThatASinkIsSent) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  Sensor().turn(lilod, 12.0);
+  std::map<std::string, std::map<std::string, double>> of_kind;
+  while (const auto datagram = lilod.sink().receive(milliseconds(1200))) {
+    const json message = json::parse(*datagram);
+    ASSERT_TRUE(message["timestamp"].is_number()) << *datagram;
+    const std::string kind = message.contains("pose") ? "pose" : "health";
+    add_series(message, "", of_kind[kind]);
+    if (of_kind.size() == 2 && of_kind["pose"].count("/pose/position/x") != 0 &&
+        message.contains("health") && message["health"]["poses_sent"] > 5)
+      break;
+  }
+  for (const char* series : {"/timestamp", "/seq", "/pose/position/x", "/pose/orientation/w",
+                             "/pose/latency_ms", "/pose/lost_packets"})
+    EXPECT_EQ(of_kind["pose"].count(series), 1U) << series;
+  EXPECT_EQ(of_kind["health"].count("/health/latency_ms/p99"), 1U);
+  for (const auto& [series, value] : of_kind["health"]) {
+    EXPECT_EQ(of_kind["pose"].count(series), series == "/timestamp" ? 1U : 0U) << series;
+  }
+}
+
+// A table for people, datagrams for programs, a file for evo.
+TEST(Listen, PrintsJsonLinesAndATumFile) {
+  const std::string port = std::to_string(free_udp_port());
+  const TemporaryFile tum("listen.tum", "");
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  const std::string lilo = LILO_BIN_DIR "/lilo";
+  std::vector<std::string> words{lilo, "listen", "--port", port, "--count", "3", "--timeout", "10"};
+  ChildProcess table(words);
+  add_sink(lilod, "127.0.0.1:" + port);
+  const Turning turning(lilod);
+  EXPECT_EQ(table.wait(seconds(20)), 0) << table.standard_error();
+  EXPECT_NE(table.standard_output().find("roll deg"), std::string::npos);
+  words.insert(words.end(), {"--json", "--tum", tum.path()});
+  const Finished lines = run_to_end(words);
+  EXPECT_EQ(lines.exit_code, 0) << lines.error;
+  std::istringstream text(lines.output);
+  std::size_t poses = 0;
+  for (std::string line; std::getline(text, line);) {
+    const json message = json::parse(line);
+    EXPECT_EQ(violations(protocol_schema(), message), std::vector<std::string>{});
+    poses += message.contains("pose") ? 1 : 0;
+  }
+  EXPECT_EQ(poses, 3U);
+  std::ifstream file(tum.path());
+  std::size_t rows = 0;
+  for (std::string line; std::getline(file, line); ++rows) {
+    std::istringstream columns(line);
+    EXPECT_EQ(std::distance(std::istream_iterator<double>(columns), {}), 8) << line;
+  }
+  EXPECT_EQ(rows, 3U);
 }
 
 TEST(FlatJson, AgreesWithAParserOnGoodAndBad) {
