@@ -16,7 +16,7 @@ const BeamTable k64 = test::even_beams(64, -24.8, 2.0);
 
 cv::Mat1b surfaces_everywhere(const RangeImage& image) {
   cv::Mat1b labels(image.range_m.size(), static_cast<uchar>(Label::surface));
-  labels.setTo(static_cast<uchar>(Label::empty), image.range_m <= 0.0F);
+  labels.setTo(static_cast<uchar>(Label::empty), image.range_m <= 0.0);
   return labels;
 }
 

@@ -53,7 +53,7 @@ TEST(Projection, ReconstructionGivesBackTheReturn) {
   const RangeImage image = projected(scan, 1024);
   const cv::Mat1b all(image.range_m.size(), static_cast<uchar>(Label::surface));
   cv::Mat1b labels = all.clone();
-  labels.setTo(static_cast<uchar>(Label::empty), image.range_m <= 0.0F);
+  labels.setTo(static_cast<uchar>(Label::empty), image.range_m <= 0.0);
   const Features features = reconstruct(scan, image, labels);
   ASSERT_GT(features.surfaces->size(), 10000U);
   std::size_t n = 0;

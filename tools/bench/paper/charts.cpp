@@ -126,6 +126,7 @@ std::string two_panels(const std::string& folder, const TwoPanels& chart,
 
 std::vector<Line> lines_of(const std::vector<Cell>& cells, const char* kind, bool by_group) {
   std::vector<Line> lines;
+  lines.reserve(cells.size());
   for (const Cell& cell : cells) {
     lines.push_back({fmt::format("{}/{}.csv", kind, file_stem(cell)),
                      by_group ? std::string(to_string(cell.group)) : image_text(cell)});
