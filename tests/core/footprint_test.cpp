@@ -1,0 +1,87 @@
+#include "core/standard/footprint.hpp"
+
+#include "core/standard/feature_image.hpp"
+#include "tests/core/analytic_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace lilo::standard {
+namespace {
+
+constexpr double kSpan_s = 0.1;
+
+test::Scene road_with_posts() {
+  test::Scene road;
+  road.planes = {{{0.0, 0.0, 1.0}, -1.8}};
+  for (int k = 0; k < 24; ++k) {
+    const double along_m = -100.0 + 11.0 * k + 3.0 * std::sin(2.0 * k);
+    road.poles.push_back({along_m, k % 2 == 0 ? 9.0 : -7.0, 0.25, 3.0});
+  }
+  return road;
+}
+
+/// Two scans from a sensor in constant motion, as features; the first firing of the first one is
+/// from the origin.
+std::vector<std::vector<Feature>> two_scans(const Twist& twist) {
+  FeatureImage image(1024, {});
+  std::vector<std::vector<Feature>> scans;
+  for (int k = 0; k < 2; ++k) {
+    const Scan scan = test::scan_of(
+        road_with_posts(), test::even_beams(16, -15.0, 15.0), 900,
+        [&](double s) {
+          const double t_s = kSpan_s * (k + s);
+          return Pose{so3_exp(t_s * twist.angular_radps), t_s * twist.linear_mps};
+        },
+        static_cast<std::uint64_t>(k));
+    scans.push_back(image.build(scan));
+  }
+  return scans;
+}
+
+int cells_under(const std::vector<std::vector<Feature>>& scans, const Twist& supposed) {
+  Footprint footprint;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    footprint.add(scans[k], kSpan_s * static_cast<double>(k), kSpan_s, supposed);
+  }
+  return footprint.cells();
+}
+
+Twist ahead(double speed_mps) {
+  Twist twist;
+  twist.linear_mps.x() = speed_mps;
+  return twist;
+}
+
+TEST(Footprint, IsLeastUnderTheTrueSpeed) {
+  for (const double true_mps : {0.0, 10.0, 25.0}) {
+    const auto scans = two_scans(ahead(true_mps));
+    const int at_truth = cells_under(scans, ahead(true_mps));
+    for (const double other_mps : {-10.0, 0.0, 10.0, 25.0, 35.0}) {
+      if (other_mps == true_mps) continue;
+      EXPECT_LT(at_truth, cells_under(scans, ahead(other_mps)))
+          << true_mps << " m/s driven, " << other_mps << " m/s supposed";
+    }
+  }
+}
+
+TEST(Footprint, OfTheSameScanTwiceIsThatOfOne) {
+  auto scans = two_scans(ahead(0.0));
+  scans[1] = scans[0];
+  const int once = cells_under({scans[0]}, ahead(0.0));
+  EXPECT_GT(once, 0);
+  EXPECT_EQ(cells_under(scans, ahead(0.0)), once);
+}
+
+TEST(Footprint, GroundTakesNoRoom) {
+  Feature ground{};
+  ground.x_m = 5.0F;
+  ground.kind = Kind::ground;
+  EXPECT_EQ(cells_under({{ground}}, ahead(0.0)), 0);
+  ground.kind = Kind::structure;
+  EXPECT_EQ(cells_under({{ground}}, ahead(0.0)), 1);
+}
+
+}  // namespace
+}  // namespace lilo::standard
