@@ -62,8 +62,8 @@ struct PaperConfig {
 /// The default profile: features of the image plane on a map of Gaussian cells.
 struct StandardConfig {
   int columns = 1024;             ///< width of the range image
-  int ground_features = 1200;     ///< features aligned, about so many
-  int structure_features = 1500;  ///< everything that is not ground
+  int ground_features = 900;      ///< features aligned, about so many
+  int structure_features = 1100;  ///< everything that is not ground
   int map_features = 6000;        ///< features a keyframe adds to the map, at most
   double cell_m = 0.5;            ///< map cell; a distribution spans three of them
   double coarse_cell_m = 1.5;     ///< map cell where the fine ones know too little
@@ -71,16 +71,16 @@ struct StandardConfig {
   double map_radius_m = 100.0;    ///< farther cells are forgotten
   double keyframe_m = 0.3;        ///< the map grows when the sensor has moved so far
   double keyframe_rad = 2.0 * std::numbers::pi / 180.0;  ///< or turned so far
-  double noise_m = 0.02;                                 ///< 1 sigma of a return across a surface
-  double ground_kernel = 5.0;     ///< Cauchy scale in sigmas: wide, ground is rough
-  double structure_kernel = 2.0;  ///< tight: structure moves, hides and sways
-  double data_weight = 0.05;      ///< neighbouring residuals are not independent: each counts less
+  double noise_m = 0.015;                                ///< 1 sigma of a return across a surface
+  double ground_kernel = 1.5;     ///< Cauchy scale in sigmas of the map: ground is rough
+  double structure_kernel = 1.0;  ///< tighter: structure moves, hides and sways
+  double data_weight = 0.1;       ///< neighbouring residuals are not independent: each counts less
   int segments = 2;               ///< pieces of the motion within one scan
   int max_iterations = 8;
   /// Power densities of the acceleration's white noise: how fast the motion may change.
-  double roll_pitch_density = 0.2;   ///< rad^2/s^3: suspension, rough ground
-  double yaw_density = 0.05;         ///< rad^2/s^3
-  double translation_density = 1.0;  ///< m^2/s^3
+  double roll_pitch_density = 0.3;   ///< rad^2/s^3: suspension, rough ground
+  double yaw_density = 0.03;         ///< rad^2/s^3
+  double translation_density = 3.0;  ///< m^2/s^3
 };
 
 /// Every choice of the odometry. One struct, plain values; see config/*.yaml for the user's view.

@@ -14,6 +14,7 @@ constexpr float kFewPoints_m = 0.1F;  // 1 sigma of what one point says of the s
 // A direction informs if its spread (1 sigma) stays under this part of the window's width; an even
 // filling has 0.29.
 constexpr float kThin = 0.065F;
+constexpr std::uint32_t kYoung = 4;  // keyframes
 constexpr std::size_t kSweepShare = 64;
 
 Symmetric outer(const Eigen::Vector3f& v) {
@@ -105,7 +106,12 @@ void CellMap::insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reac
   const std::int32_t at = find_or_add(i);
   if (at < 0) return;
   Sums& sums = sums_[static_cast<std::size_t>(at)];
-  if (sums.count >= config_.full_count) return;
+  if (sums.count >= config_.memory) {
+    const float kept = 1.0F - 1.0F / config_.memory;
+    sums.count *= kept;
+    sums.point *= kept;
+    sums.square *= kept;
+  }
   const Eigen::Vector3f p = (point_m - center_of(i)).cast<float>();
   // Seen through a window of three cells, a longer reach is just "all of it".
   const float window_m = 3.0F * config_.cell_m;
@@ -144,7 +150,7 @@ CellMap::Sums CellMap::sums_around(const Index& i) const {
 }
 
 void CellMap::fit(Cell& cell) const {
-  cell.refit_at = keyframe_ + 1 + (keyframe_ - cell.born) / 4;
+  cell.refit_at = keyframe_ + (keyframe_ - cell.born < kYoung ? 1 : 2);
   cell.information.setZero();
   const Sums sums = sums_around(cell.index);
   if (sums.count < kMinCount) return;

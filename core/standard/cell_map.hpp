@@ -19,9 +19,11 @@ struct Match {
 
 struct CellMapConfig {
   float cell_m = 0.5F;
-  float noise_m = 0.02F;      ///< 1 sigma of a return across a surface
-  int capacity = 100000;      ///< cells; beyond it new ones are refused and counted
-  float full_count = 100.0F;  ///< points a cell takes: the first ones have drifted least
+  float noise_m = 0.02F;  ///< 1 sigma of a return across a surface
+  int capacity = 100000;  ///< cells; beyond it new ones are refused and counted
+  /// Points a cell remembers; older ones fade. What is seen of a thing moves as the sensor passes
+  /// it: held against its oldest views, a scan is dragged back, and every path comes out too short.
+  float memory = 30.0F;
 };
 
 /// Hash table of cells. A cell's distribution is the Gaussian of the points in the 3x3x3 cells
@@ -39,7 +41,7 @@ class CellMap {
   void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m);
 
   /// The distribution around a point. Fits are cached: a young cell is fitted again after every
-  /// end_keyframe(), an older one ever more rarely.
+  /// end_keyframe(), an older one after every second.
   Match find(const Eigen::Vector3d& point_m);
 
   void end_keyframe() { ++keyframe_; }

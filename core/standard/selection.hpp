@@ -18,6 +18,9 @@ class Selection {
   /// The chosen features, in the image's order; the result lives until the next call.
   const std::vector<Feature>& choose(const std::vector<Feature>& all);
 
+  /// More are never chosen.
+  [[nodiscard]] std::size_t most() const { return chosen_.capacity(); }
+
  private:
   static constexpr int kKinds = 2;
   [[nodiscard]] std::uint64_t voxel_of(const Feature& f) const;

@@ -144,8 +144,8 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior) {
   // Far from the solution a part of the features shows the way as well as all of them.
   constexpr std::size_t kCoarseStride = 4;
-  constexpr double kNear_rad = 1e-3, kNear_m = 0.01;
-  constexpr double kEnough_rad = 5e-5, kEnough_m = 5e-4;
+  constexpr double kNear_rad = 3e-3, kNear_m = 0.03;
+  constexpr double kEnough_rad = 1.5e-4, kEnough_m = 1.5e-3;
   std::size_t stride = kCoarseStride;
   Solution solution;
   const int n = kKnotSize * (config_.segments + 1);

@@ -36,8 +36,8 @@ struct Prior {
 struct SolverConfig {
   int segments = 1;
   int max_iterations = 8;
-  float ground_kernel = 5.0F;     ///< Cauchy scale in sigmas: wide, ground is rough
-  float structure_kernel = 2.0F;  ///< tight, structure moves and hides
+  float ground_kernel = 1.5F;     ///< Cauchy scale in sigmas of the map: ground is rough
+  float structure_kernel = 1.0F;  ///< tighter: structure moves and hides
   float data_weight = 0.1F;  ///< neighbouring residuals are not independent: each counts for less
   /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
   Vector6d acceleration_density = Vector6d::Ones();

@@ -46,17 +46,25 @@ Tracker::Tracker(const OdometryConfig& config)
       selection_(config.standard.ground_features, config.standard.structure_features),
       maps_(make_maps(config.standard)),
       solver_(solver_config(config.standard)),
-      information_(first_information()) {}
+      information_(first_information()) {
+  const StandardConfig& c = config.standard;
+  const auto for_map = static_cast<std::size_t>(c.map_features);
+  held_.features.reserve(for_map);
+  for (Seen& seen : seen_) {
+    seen.for_map.reserve(for_map);
+    seen.chosen.reserve(selection_.most());
+  }
+}
 
 Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, StageHook hook) {
   const std::vector<Feature>& chosen = selection_.choose(features);
   hook(Stage::filter);
-  const Timing timing{scan.start_ns, scan.end_ns, scan.motion_compensated};
-  remember(timing, features, chosen);
-  const Prior prior = predict(timing);
+  timing_ = {scan.start_ns, scan.end_ns, scan.motion_compensated};
+  remember(features, chosen);
+  const Prior prior = predict(timing_);
   solution_ = scan_count_ == 1 ? start() : solver_.solve(chosen, maps_, prior);
   status_ = status_of(scan, solution_, chosen.size());
-  accept(timing, prior, solution_);
+  accept(timing_, prior, solution_);
   const bool in_vain = status_ == TrackingStatus::lost && chosen.size() >= kMinFeatures;
   lost_scans_ = in_vain ? lost_scans_ + 1 : 0;
   const Estimate result = estimate(scan, solution_, chosen);
@@ -65,7 +73,7 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
 }
 
 void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
-  grow_map(features, solution_);
+  grow_map(timing_, features, solution_);
   ++scan_count_;
   if (lost_scans_ == kScansToGiveUp) start_anew();
   hook(Stage::update_map);
@@ -127,7 +135,7 @@ TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
       solution.inliers < kMinWeight * matched) {
     return TrackingStatus::lost;
   }
-  if (!starts_.empty()) return TrackingStatus::initializing;  // another motion fits as well
+  if (scan_count_ > 1 && seen_count_ > 0) return TrackingStatus::initializing;  // or so it may be
   return scan.complete && solution.converged ? TrackingStatus::tracking : TrackingStatus::degraded;
 }
 
@@ -144,29 +152,59 @@ void Tracker::accept(const Timing& scan, const Prior& prior, const Solution& sol
   information_ = solution.end_information;
 }
 
-void Tracker::grow_map(const std::vector<Feature>& features, const Solution& solution) {
-  const StandardConfig& c = config_.standard;
-  maps_.forget_beyond(T_odom_sensor_.translation_m, c.map_radius_m);
-  if (status_ == TrackingStatus::lost) return;
-  const Pose moved_by = T_odom_keyframe_.inverse() * T_odom_sensor_;
+bool Tracker::is_young(const Solution& solution) const {
   // One scan of an open country fills few cells with enough points; standing still adds them.
   constexpr double kKnowsEnough = 0.5;
-  const bool young = keyframes_ < kYoung && solution.matched < kKnowsEnough * solution.asked;
-  if (scan_count_ > 0 && !young && moved_by.translation_m.norm() < c.keyframe_m &&
+  return keyframes_ < kYoung && solution.matched < kKnowsEnough * solution.asked;
+}
+
+void Tracker::grow_map(const Timing& scan, const std::vector<Feature>& features,
+                       const Solution& solution) {
+  const StandardConfig& c = config_.standard;
+  maps_.forget_beyond(T_odom_sensor_.translation_m, c.map_radius_m);
+  const bool lost = status_ == TrackingStatus::lost;
+  if (held_.waiting) {
+    // The end of a scan is seen from one side only, by itself; this scan has seen the other.
+    constexpr std::int64_t kNextFiring_ns = 1'000'000;
+    const bool follows = scan.motion_compensated || scan.start_ns - held_.end_ns < kNextFiring_ns;
+    if (follows && !lost) {
+      held_.trajectory.knots.tail<kKnotSize>() += solution.trajectory.knots.head<kKnotSize>();
+    }
+    insert_held();
+  }
+  if (lost) return;
+  const Pose moved_by = T_odom_keyframe_.inverse() * T_odom_sensor_;
+  if (scan_count_ > 0 && !is_young(solution) && moved_by.translation_m.norm() < c.keyframe_m &&
       so3_log(moved_by.rotation).norm() < c.keyframe_rad) {
     return;
   }
-  insert(features, solution.trajectory);
+  hold(features, solution.trajectory, scan.end_ns);
+  // While there is little else, a scan late is too late.
+  if (keyframes_ < kYoung) insert_held();
   ++keyframes_;
   T_odom_keyframe_ = T_odom_sensor_;
 }
 
-void Tracker::insert(const std::vector<Feature>& features, const Trajectory& trajectory) {
-  sample(trajectory, sampled_);
+/// Evenly, to what a keyframe may add to the map.
+void Tracker::thin_out(const std::vector<Feature>& features, std::vector<Feature>& fewer) const {
   const auto limit = static_cast<std::size_t>(config_.standard.map_features);
   const std::size_t step = std::max<std::size_t>(1, (features.size() + limit - 1) / limit);
-  for (std::size_t k = 0; k < features.size(); k += step) {
-    const Feature& f = features[k];
+  fewer.clear();
+  for (std::size_t k = 0; k < features.size(); k += step) fewer.push_back(features[k]);
+}
+
+void Tracker::hold(const std::vector<Feature>& features, const Trajectory& trajectory,
+                   std::int64_t end_ns) {
+  thin_out(features, held_.features);
+  held_.trajectory = trajectory;
+  held_.end_ns = end_ns;
+  held_.waiting = true;
+}
+
+void Tracker::insert_held() {
+  held_.waiting = false;
+  sample(held_.trajectory, sampled_);
+  for (const Feature& f : held_.features) {
     const Eigen::Vector3d p =
         sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m}).cast<double>() + sampled_.origin_m(f.s);
     const Eigen::Vector3f reach = sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m});
@@ -184,7 +222,9 @@ Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
   e.stamp_ns = scan.end_ns;
   e.T_odom_sensor = T_odom_start_ * T_odom_sensor_;
   e.twist = twist_;
-  e.status = status_;
+  // Before the start is decided, nothing is lost yet.
+  const bool starting = status_ == TrackingStatus::lost && seen_count_ > 0;
+  e.status = starting ? TrackingStatus::initializing : status_;
   e.ground_count = static_cast<int>(std::count_if(
       chosen.begin(), chosen.end(), [](const Feature& f) { return f.kind == Kind::ground; }));
   e.surface_count = static_cast<int>(chosen.size()) - e.ground_count;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "core/odometry.hpp"
+#include "core/standard/footprint.hpp"
 #include "core/standard/selection.hpp"
 #include "core/standard/solver.hpp"
 
+#include <array>
 #include <vector>
 
 namespace lilo::standard {
@@ -19,6 +21,7 @@ class Tracker {
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
  private:
+  static constexpr std::size_t kScansToDecide = 6;
   static constexpr int kYoung = 5;  // keyframes of a map that may know too little
   struct Timing {
     std::int64_t start_ns = 0, end_ns = 0;
@@ -27,37 +30,55 @@ class Tracker {
   /// What the first scans leave behind until the motion is known.
   struct Seen {
     Timing timing;
-    std::vector<Feature> all, chosen;
+    std::size_t feature_count = 0;
+    std::vector<Feature> for_map, chosen;
+  };
+  /// What a scan brings to the map, kept until the next one has told where it ended.
+  struct Held {
+    std::vector<Feature> features;
+    Trajectory trajectory;
+    std::int64_t end_ns = 0;
+    bool waiting = false;
   };
   /// A motion the sensor may have had when it was switched on.
   struct Start {
     Twist twist;  ///< as found so far
     Eigen::Vector3d believed_mps = Eigen::Vector3d::Zero();
     double doubt_mps = 0.0;  ///< 1 sigma of it, along the ground
-    double inliers = 0.0;    ///< features it explains
-    double structure = 0.0;  ///< of them what is not ground
-    double misfit = 0.0;     ///< mean square of what it leaves, in sigmas
+    bool is_clear = false;   ///< no other motion fits the scans nearly as well
+  };
+
+  /// A velocity along the ground, and the cells that what was seen takes up under it.
+  struct Look {
+    Eigen::Vector3d v_mps = Eigen::Vector3d::Zero();
+    int cells = 0;
   };
 
   static KnotInformation first_information();
   static double span_of(const Timing& timing);
   [[nodiscard]] Prior predict(const Timing& scan) const;
   void accept(const Timing& scan, const Prior& prior, const Solution& solution);
-  void grow_map(const std::vector<Feature>& features, const Solution& solution);
-  void insert(const std::vector<Feature>& features, const Trajectory& trajectory);
+  void grow_map(const Timing& scan, const std::vector<Feature>& features, const Solution& solution);
+  [[nodiscard]] bool is_young(const Solution& solution) const;
+  void thin_out(const std::vector<Feature>& features, std::vector<Feature>& fewer) const;
+  void hold(const std::vector<Feature>& features, const Trajectory& trajectory,
+            std::int64_t end_ns);
+  void insert_held();
 
   // The start, in tracker_start.cpp.
   void start_anew();
   void stand_at_origin();
   void rewind();
-  Solution try_start(Start& start);
-  Solution refine(Start& start, int rounds);
+  Solution try_start(const Start& start);
+  Solution refine(Start& start);
   Solution start();
-  std::vector<Start> rivals(std::vector<Start> tried);
-  void rehearse(Start& start, bool fill_map);
+  [[nodiscard]] int footprint_of(const Twist& twist);
+  Look look(double x_mps, double y_mps);
+  Look look_around(Look best);
+  Start most_compact();
+  void rehearse(Start start);
   void decide();
-  void remember(const Timing& timing, const std::vector<Feature>& all,
-                const std::vector<Feature>& chosen);
+  void remember(const std::vector<Feature>& all, const std::vector<Feature>& chosen);
   [[nodiscard]] TrackingStatus status_of(const Scan& scan, const Solution& solution,
                                          std::size_t feature_count) const;
   [[nodiscard]] Estimate estimate(const Scan& scan, const Solution& solution,
@@ -67,8 +88,11 @@ class Tracker {
   Selection selection_;
   LocalMaps maps_;
   Solver solver_;
+  Timing timing_;      // of the last scan
   Solution solution_;  // of the last scan
   Sampled sampled_;
+  Held held_;
+  Footprint footprint_;
 
   Pose T_odom_start_;  // where the map in force was begun; all other poses here are from there
   Pose T_odom_sensor_;
@@ -80,8 +104,8 @@ class Tracker {
   std::int64_t last_end_ns_ = 0;
   int scan_count_ = 0;
   TrackingStatus status_ = TrackingStatus::initializing;
-  std::vector<Seen> seen_;     // the first scans, until the motion is known
-  std::vector<Start> starts_;  // where several fit them: the one in force first
+  std::array<Seen, kScansToDecide> seen_;  // the first scans, until the motion is known
+  std::size_t seen_count_ = 0;
 };
 
 }  // namespace lilo::standard

@@ -56,6 +56,19 @@ TEST_F(Filled, ATrunkInformsAcrossItsAxisOnly) {
   EXPECT_LT(O(2, 2), 0.01F * O(0, 0));
 }
 
+// What is seen of a thing changes as the sensor passes it; the map must follow.
+TEST_F(Filled, OldViewsFade) {
+  const auto fill = [&](double x_m) {
+    for (int k = 0; k < 6000; ++k) map_.insert({x_m, uniform(-3, 3), uniform(-3, 3)}, no_reach_);
+    map_.end_keyframe();
+    map_.end_keyframe();
+  };
+  fill(0.20);
+  EXPECT_NEAR(map_.find({0.20, 0.1, 0.1}).from_mean_m.x(), 0.0F, 1e-3F);
+  for (int k = 0; k < 4; ++k) fill(0.30);  // 160 points a cell: five times what it remembers
+  EXPECT_NEAR(map_.find({0.30, 0.1, 0.1}).from_mean_m.x(), 0.0F, 0.002F);
+}
+
 TEST_F(Filled, FoliageInformsNowhere) {
   for (int k = 0; k < 4000; ++k) {
     map_.insert({uniform(-2, 2), uniform(-2, 2), uniform(-2, 2)}, no_reach_);
