@@ -60,12 +60,13 @@ Eigen::Vector3d CellMap::center_of(const Index& i) const {
   return Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5) / per_m_;
 }
 
+/// Cells above each other lie side by side: a fit looks at nine threes of them.
 std::size_t CellMap::slot_of(const Index& i) const {
   auto h = static_cast<std::uint64_t>(static_cast<std::uint32_t>(i.x)) * 0x9E3779B97F4A7C15ULL;
   h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(i.y)) * 0xC2B2AE3D27D4EB4FULL;
-  h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(i.z)) * 0x165667B19E3779F9ULL;
   h ^= h >> 29U;
-  return static_cast<std::size_t>(h * 0xBF58476D1CE4E5B9ULL >> 20U) & mask_;
+  h = h * 0xBF58476D1CE4E5B9ULL >> 20U;
+  return static_cast<std::size_t>(h + static_cast<std::uint32_t>(i.z)) & mask_;
 }
 
 std::int32_t CellMap::find_cell(const Index& i) const {
@@ -150,7 +151,7 @@ CellMap::Sums CellMap::sums_around(const Index& i) const {
 }
 
 void CellMap::fit(Cell& cell) const {
-  cell.refit_at = keyframe_ + (keyframe_ - cell.born < kYoung ? 1 : 2);
+  cell.refit_at = keyframe_ + (keyframe_ - cell.born < kYoung ? 1 : 6);
   cell.information.setZero();
   const Sums sums = sums_around(cell.index);
   if (sums.count < kMinCount) return;

@@ -41,7 +41,7 @@ class CellMap {
   void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m);
 
   /// The distribution around a point. Fits are cached: a young cell is fitted again after every
-  /// end_keyframe(), an older one after every second.
+  /// end_keyframe(), an older one after every sixth.
   Match find(const Eigen::Vector3d& point_m);
 
   void end_keyframe() { ++keyframe_; }
