@@ -37,7 +37,8 @@ struct Estimate {
   Pose T_odom_sensor;         ///< identity at the first scan
   Twist twist;
   TrackingStatus status = TrackingStatus::initializing;
-  /// 1-sigma squared, row-major meaning: x y z rx ry rz (m, rad), in the sensor's frame.
+  /// Of the pose since the first scan: 1-sigma squared, x y z rx ry rz (m, rad), in the sensor's
+  /// frame. Grows with the way travelled. How far it can be trusted: core/README.md.
   /// Valid only where has_covariance is set.
   Matrix6d covariance = Matrix6d::Zero();
   bool has_covariance = false;

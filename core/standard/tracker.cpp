@@ -142,14 +142,16 @@ TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
 void Tracker::accept(const Timing& scan, const Prior& prior, const Solution& solution) {
   last_end_ns_ = scan.end_ns;
   if (scan_count_ == 0) return;
+  const Eigen::Vector3d from_m = T_odom_sensor_.translation_m;
   if (status_ == TrackingStatus::lost) {
     T_odom_sensor_ = moved(prior.T_begin, prior.twist, prior.span_s);
     information_ = solver_.propagated(prior.begin_information, prior.span_s);
-    return;
+  } else {
+    T_odom_sensor_ = solution.trajectory.end();
+    twist_ = solution.trajectory.end_twist();
+    information_ = solution.end_information;
   }
-  T_odom_sensor_ = solution.trajectory.end();
-  twist_ = solution.trajectory.end_twist();
-  information_ = solution.end_information;
+  drift_.move(T_odom_sensor_.translation_m - from_m);
 }
 
 bool Tracker::is_young(const Solution& solution) const {
@@ -183,6 +185,7 @@ void Tracker::grow_map(const Timing& scan, const std::vector<Feature>& features,
   if (keyframes_ < kYoung) insert_held();
   ++keyframes_;
   T_odom_keyframe_ = T_odom_sensor_;
+  drift_.inherit(alignment_covariance());
 }
 
 /// Evenly, to what a keyframe may add to the map.
@@ -215,6 +218,16 @@ void Tracker::insert_held() {
   maps_.end_keyframe();
 }
 
+/// Of the last pose against the map: rotation, translation; odometry axes.
+Matrix6d Tracker::alignment_covariance() const {
+  return information_.inverse().topLeftCorner<6, 6>();
+}
+
+/// Of the last pose since the first: rotation, translation; the sensor's axes.
+Matrix6d Tracker::sensor_covariance() const {
+  return in_sensor_axes(drift_.covariance() + alignment_covariance(), T_odom_sensor_.rotation);
+}
+
 Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
                            const std::vector<Feature>& chosen) const {
   Estimate e;
@@ -238,6 +251,8 @@ Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
     e.weak_count = weak.count;
     if (weak.count > 0 && status_ == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
   }
+  e.covariance = translation_first(sensor_covariance());
+  e.has_covariance = e.covariance.allFinite();
   e.residual_rms_sigma = std::sqrt(solution.mean_square);
   return e;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/odometry.hpp"
+#include "core/standard/drift.hpp"
 #include "core/standard/footprint.hpp"
 #include "core/standard/selection.hpp"
 #include "core/standard/solver.hpp"
@@ -64,6 +65,8 @@ class Tracker {
   void hold(const std::vector<Feature>& features, const Trajectory& trajectory,
             std::int64_t end_ns);
   void insert_held();
+  [[nodiscard]] Matrix6d alignment_covariance() const;
+  [[nodiscard]] Matrix6d sensor_covariance() const;
 
   // The start, in tracker_start.cpp.
   void start_anew();
@@ -92,6 +95,7 @@ class Tracker {
   Solution solution_;  // of the last scan
   Sampled sampled_;
   Held held_;
+  Drift drift_;
   Footprint footprint_;
 
   Pose T_odom_start_;  // where the map in force was begun; all other poses here are from there

@@ -42,6 +42,7 @@ void Tracker::remember(const std::vector<Feature>& all, const std::vector<Featur
 /// Gives the map up and begins another where the prediction ends: wherever the sensor is now, it is
 /// not where the map knows it, and only a new map ever lets it track again.
 void Tracker::start_anew() {
+  drift_.begin(sensor_covariance());  // the sensor's axes are the new map's
   T_odom_start_ = T_odom_start_ * T_odom_sensor_;
   stand_at_origin();
   maps_.clear();
@@ -53,6 +54,7 @@ void Tracker::stand_at_origin() {
   T_odom_sensor_ = {};
   T_odom_keyframe_ = {};
   held_.waiting = false;
+  drift_.rewind();
   twist_ = {};
   information_ = first_information();
 }
