@@ -31,8 +31,8 @@ struct Features {
 Features reconstruct(const Scan& scan, const RangeImage& image, const cv::Mat1b& labels,
                      bool pixel_centres = false);
 
-/// PCL voxel grid, one centroid a voxel of `leaf_m`: of a scan's features (Section 1) and of the local
-/// maps (Section 4). The paper is silent on the size.
+/// PCL voxel grid, one centroid a voxel of `leaf_m`: of a scan's features (Section 1) and of the
+/// local maps (Section 4). The paper is silent on the size.
 Cloud::Ptr voxel_grid(const Cloud::Ptr& cloud, double leaf_m);
 
 /// Section 4, after F-LOAM: moves every point from the sensor's frame at its own instant to the

@@ -146,11 +146,13 @@ Tracker::Start Tracker::most_compact() {
   constexpr int kSpeeds = 40, kHeadings = 16;
   std::array<Look, 1 + kSpeeds * kHeadings> looks;
   looks[0] = look(0.0, 0.0);
-  for (int n = 0; n < kSpeeds * kHeadings; ++n) {
-    const double speed_mps = kStep_mps * (1 + n / kHeadings);
-    const double heading_rad = 2.0 * std::numbers::pi * (n % kHeadings) / kHeadings;
-    looks[static_cast<std::size_t>(n + 1)] =
-        look(speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad));
+  std::size_t n = 1;
+  for (int speed = 1; speed <= kSpeeds; ++speed) {
+    for (int heading = 0; heading < kHeadings; ++heading) {
+      const double speed_mps = kStep_mps * speed;
+      const double heading_rad = 2.0 * std::numbers::pi * heading / kHeadings;
+      looks[n++] = look(speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad));
+    }
   }
   const Look best = *std::min_element(
       looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.cells < b.cells; });
