@@ -1,7 +1,5 @@
 #include "core/standard/footprint.hpp"
 
-#include "core/standard/trajectory.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -20,24 +18,25 @@ void Footprint::clear() {
   cells_ = 0;
 }
 
-void Footprint::add(const std::vector<Feature>& features, double start_s, double span_s,
-                    const Twist& twist) {
+void Footprint::add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end) {
   constexpr float kPerCell = 1.0F / kCell_m;
-  const Pose middle = moved({}, twist, start_s + 0.5 * span_s);
+  constexpr auto kSide_f = static_cast<float>(kSide);
   // Within one scan the turn is small: the middle of it serves all, the way travelled each its own.
-  const Eigen::Matrix3f rotation = middle.rotation.toRotationMatrix().cast<float>();
-  const Eigen::Vector3f origin_m = middle.translation_m.cast<float>();
-  const Eigen::Vector3f way_m = (middle.rotation * twist.linear_mps * span_s).cast<float>();
+  const Eigen::Matrix<float, 2, 3> R =
+      (kPerCell * T_begin.rotation.slerp(0.5, T_end.rotation).toRotationMatrix().topRows<2>())
+          .cast<float>();
+  const Eigen::Vector2f begin =
+      (kPerCell * T_begin.translation_m.head<2>()).cast<float>().array() + 0.5F * kSide_f;
+  const Eigen::Vector2f way =
+      (kPerCell * (T_end.translation_m - T_begin.translation_m).head<2>()).cast<float>();
   for (const Feature& f : features) {
     if (f.kind != Kind::structure) continue;
-    const Eigen::Vector3f p =
-        rotation * Eigen::Vector3f(f.x_m, f.y_m, f.z_m) + origin_m + (f.s - 0.5F) * way_m;
-    const int x = static_cast<int>(std::floor(p.x() * kPerCell)) + kSide / 2;
-    const int y = static_cast<int>(std::floor(p.y() * kPerCell)) + kSide / 2;
-    if (x < 0 || x >= kSide || y < 0 || y >= kSide) continue;
+    const float x = R(0, 0) * f.x_m + R(0, 1) * f.y_m + R(0, 2) * f.z_m + begin.x() + f.s * way.x();
+    const float y = R(1, 0) * f.x_m + R(1, 1) * f.y_m + R(1, 2) * f.z_m + begin.y() + f.s * way.y();
+    if (!(x >= 0.0F && x < kSide_f && y >= 0.0F && y < kSide_f)) continue;
     const auto at = static_cast<std::size_t>(y) * kSide + static_cast<std::size_t>(x);
     const std::uint64_t bit = std::uint64_t{1} << (at % 64);
-    if ((taken_[at / 64] & bit) == 0) ++cells_;
+    cells_ += static_cast<int>((taken_[at / 64] & bit) == 0);
     taken_[at / 64] |= bit;
   }
 }

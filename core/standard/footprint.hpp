@@ -21,9 +21,8 @@ class Footprint {
   [[nodiscard]] int cells() const { return cells_; }
   void clear();
 
-  /// Adds the structure of one scan seen under constant `twist`. `start_s`, `span_s`: its first
-  /// firing, in seconds after the instant at which the sensor was at the origin, and its duration.
-  void add(const std::vector<Feature>& features, double start_s, double span_s, const Twist& twist);
+  /// Adds the structure of one scan that lasted from `T_begin` to `T_end`, at constant velocity.
+  void add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end);
 
  private:
   std::vector<std::uint64_t> taken_;

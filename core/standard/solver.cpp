@@ -159,7 +159,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     for (int bin = 0; bin <= kBins; ++bin) {
       Matrix6d& A = bins_[static_cast<std::size_t>(bin)].H;
       A.bottomLeftCorner<3, 3>() = A.topRightCorner<3, 3>().transpose();
-      solution.data_information += A;
+      solution.data_information += A / static_cast<double>(config_.data_weight);
       const KnotWeights w =
           weights_at(static_cast<double>(bin) / kBins, config_.segments, prior.span_s);
       for (int i = 0; i < 4; ++i) {
@@ -187,8 +187,8 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
       solution.end_information = marginal_of_last(H);
     }
   }
-  const KnotInformation predicted = propagated(prior.begin_information, prior.span_s);
-  solution.prediction_information = predicted.inverse().topLeftCorner<6, 6>().inverse();
+  const KnotInformation unrest = process_information(config_.acceleration_density, prior.span_s);
+  solution.motion_information = unrest.inverse().topLeftCorner<6, 6>().inverse();
   return solution;
 }
 

@@ -46,13 +46,15 @@ struct SolverConfig {
 struct Solution {
   Trajectory trajectory;
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
-  Matrix6d data_information = Matrix6d::Zero();               ///< of the pose, from the scan alone
-  Matrix6d prediction_information = Matrix6d::Zero();  ///< of the pose, before the scan was seen
-  int asked = 0;                                       ///< features looked up
-  int matched = 0;                                     ///< features that found a distribution
-  double inliers = 0;                                  ///< sum of robust weights
-  double structure_inliers = 0;                        ///< of them what is not ground
-  double mean_square = 0.0;  ///< weighted mean of squared residuals in sigmas
+  /// Of the pose, from the scan alone, as though its residuals were independent.
+  Matrix6d data_information = Matrix6d::Zero();
+  /// Of the pose, from a motion known exactly until the scan began.
+  Matrix6d motion_information = Matrix6d::Zero();
+  int asked = 0;                 ///< features looked up
+  int matched = 0;               ///< features that found a distribution
+  double inliers = 0;            ///< sum of robust weights
+  double structure_inliers = 0;  ///< of them what is not ground
+  double mean_square = 0.0;      ///< weighted mean of squared residuals in sigmas
   int iterations = 0;
   bool converged = false;
 };

@@ -10,6 +10,7 @@ namespace lilo::standard {
 namespace {
 
 constexpr std::size_t kMinFeatures = 100;
+constexpr std::size_t kMostLooks = 4096;
 constexpr int kScansToGiveUp = 10;  // that saw enough and found nothing of it in the map
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
@@ -50,6 +51,7 @@ Tracker::Tracker(const OdometryConfig& config)
   const StandardConfig& c = config.standard;
   const auto for_map = static_cast<std::size_t>(c.map_features);
   held_.features.reserve(for_map);
+  looks_.reserve(kMostLooks);
   for (Seen& seen : seen_) {
     seen.for_map.reserve(for_map);
     seen.chosen.reserve(selection_.most());
@@ -65,6 +67,9 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
   solution_ = scan_count_ == 1 ? start() : solver_.solve(chosen, maps_, prior);
   status_ = status_of(scan, solution_, chosen.size());
   accept(timing_, prior, solution_);
+  if (seen_count_ > 1 && status_ != TrackingStatus::lost) {
+    note_track(seen_[seen_count_ - 1], solution_.trajectory.at(0.0), T_odom_sensor_);
+  }
   const bool in_vain = status_ == TrackingStatus::lost && chosen.size() >= kMinFeatures;
   lost_scans_ = in_vain ? lost_scans_ + 1 : 0;
   const Estimate result = estimate(scan, solution_, chosen);
@@ -135,7 +140,7 @@ TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
       solution.inliers < kMinWeight * matched) {
     return TrackingStatus::lost;
   }
-  if (scan_count_ > 1 && seen_count_ > 0) return TrackingStatus::initializing;  // or so it may be
+  if (seen_count_ > 0) return TrackingStatus::initializing;  // or so it may be
   return scan.complete && solution.converged ? TrackingStatus::tracking : TrackingStatus::degraded;
 }
 
@@ -246,7 +251,7 @@ Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
   e.iterations = solution.iterations;
   if (scan_count_ > 0 && status_ != TrackingStatus::lost) {
     const WeakDirections weak = weak_directions(
-        solution.data_information, solution.prediction_information, T_odom_sensor_.rotation);
+        solution.data_information, solution.motion_information, T_odom_sensor_.rotation);
     e.weak_directions = weak.all;
     e.weak_count = weak.count;
     if (weak.count > 0 && status_ == TrackingStatus::tracking) e.status = TrackingStatus::degraded;

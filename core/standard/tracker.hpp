@@ -31,6 +31,7 @@ class Tracker {
   /// What the first scans leave behind until the motion is known.
   struct Seen {
     Timing timing;
+    Pose T_begin, T_end;  ///< as tracked; of the newest as predicted
     std::size_t feature_count = 0;
     std::vector<Feature> for_map, chosen;
   };
@@ -46,12 +47,13 @@ class Tracker {
     Twist twist;  ///< as found so far
     Eigen::Vector3d believed_mps = Eigen::Vector3d::Zero();
     double doubt_mps = 0.0;  ///< 1 sigma of it, along the ground
-    bool is_clear = false;   ///< no other motion fits the scans nearly as well
+    bool moves = false;
+    bool is_clear = false;  ///< no other motion fits the scans nearly as well
   };
 
-  /// A velocity along the ground, and the cells that what was seen takes up under it.
+  /// A constant motion, and the cells that what was seen takes up under it.
   struct Look {
-    Eigen::Vector3d v_mps = Eigen::Vector3d::Zero();
+    Twist twist;
     int cells = 0;
   };
 
@@ -73,14 +75,21 @@ class Tracker {
   void stand_at_origin();
   void rewind();
   Solution try_start(const Start& start);
+  static void believe(const Start& start, Prior& prior);
   Solution refine(Start& start);
   Solution start();
-  [[nodiscard]] int footprint_of(const Twist& twist);
-  Look look(double x_mps, double y_mps);
-  Look look_around(Look best);
+  Look look(const Twist& twist);
+  [[nodiscard]] int cells_as_tracked();
+  [[nodiscard]] Twist twist_so_far() const;
+  Look look_around(const Twist& about);
+  [[nodiscard]] bool is_less(int cells, int other_cells, double sigmas) const;
+  void look_everywhere();
   Start most_compact();
+  Start best_start(const Twist& tracked);
   void rehearse(Start start);
   void decide();
+  static void note_track(Seen& seen, const Pose& T_begin, const Pose& T_end);
+  void note_prediction(Seen& seen) const;
   void remember(const std::vector<Feature>& all, const std::vector<Feature>& chosen);
   [[nodiscard]] TrackingStatus status_of(const Scan& scan, const Solution& solution,
                                          std::size_t feature_count) const;
@@ -110,6 +119,9 @@ class Tracker {
   TrackingStatus status_ = TrackingStatus::initializing;
   std::array<Seen, kScansToDecide> seen_;  // the first scans, until the motion is known
   std::size_t seen_count_ = 0;
+  int cells_alone_ = 0;  // that the first scans take up, each for itself, all together
+  bool start_is_clear_ = false;
+  std::vector<Look> looks_;
 };
 
 }  // namespace lilo::standard

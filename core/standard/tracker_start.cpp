@@ -15,11 +15,13 @@ namespace lilo::standard {
 namespace {
 
 constexpr double kStanding_mps = 0.5;  // a robot that is switched on mostly stands
+constexpr double kMoving_mps = 1.0;
+constexpr double kOther_mps = 3.0, kOther_radps = 0.5;  // motions nearer to each other are the same
+constexpr double kClearly = 2.0, kProbably = 1.0;       // sigmas
 
-/// Whether `fewer` of `cells` cells is more than chance: a cell is hit or missed by a few returns.
-bool is_clearly_fewer(int fewer, int cells) {
-  constexpr double kSigmas = 2.0;
-  return cells - fewer > kSigmas * std::sqrt(static_cast<double>(cells));
+bool differ(const Twist& a, const Twist& b, double mps, double radps) {
+  return (a.linear_mps - b.linear_mps).norm() > mps ||
+         (a.angular_radps - b.angular_radps).norm() > radps;
 }
 
 }  // namespace
@@ -36,6 +38,10 @@ void Tracker::remember(const std::vector<Feature>& all, const std::vector<Featur
   seen.feature_count = all.size();
   thin_out(all, seen.for_map);
   seen.chosen.assign(chosen.begin(), chosen.end());
+  note_prediction(seen);
+  footprint_.clear();
+  footprint_.add(chosen, {}, {});
+  cells_alone_ = footprint_.cells() + (seen_count_ == 1 ? 0 : cells_alone_);
   if (seen_count_ > 2) decide();
 }
 
@@ -66,6 +72,18 @@ void Tracker::rewind() {
   scan_count_ = keyframes_ = 1;
 }
 
+/// Adds what is believed of the speed along the ground to what the prediction knows of it.
+void Tracker::believe(const Start& start, Prior& prior) {
+  const Eigen::Vector3d predicted_mps = prior.T_begin.rotation * prior.twist.linear_mps;
+  const double weight = 1.0 / (start.doubt_mps * start.doubt_mps);
+  KnotInformation both = prior.begin_information;
+  both.diagonal().segment<2>(9).array() += weight;
+  Eigen::Matrix<double, kKnotSize, 1> pull = prior.begin_information * prior.begin_mean;
+  pull.segment<2>(9) += weight * (start.believed_mps - predicted_mps).head<2>();
+  prior.begin_mean = both.ldlt().solve(pull);
+  prior.begin_information = both;
+}
+
 /// Aligns the second scan when the sensor moved by about `start.twist` during both: the first one,
 /// which alone makes the map, is straightened by it.
 Solution Tracker::try_start(const Start& start) {
@@ -76,25 +94,27 @@ Solution Tracker::try_start(const Start& start) {
   first.span_s = span_of(seen_[0].timing);
   first.T_begin = moved({}, start.twist, -first.span_s);
   first.knots = Unknowns::Zero(Eigen::Index{kKnotSize} * (first.segments + 1));
+  note_track(seen_[0], first.T_begin, {});
   maps_.clear();
   hold(seen_[0].for_map, first, seen_[0].timing.end_ns);
   insert_held();
   prior.twist = start.twist;
-  prior.begin_information.diagonal().segment<2>(9).setConstant(1.0 /
-                                                               (start.doubt_mps * start.doubt_mps));
   // However often it is refined, what was believed at first stays believed.
-  prior.begin_mean.segment<2>(9) = (start.believed_mps - start.twist.linear_mps).head<2>();
+  believe(start, prior);
   return solver_.solve(seen_[1].chosen, maps_, prior);
 }
 
+/// Until the motion found is the motion assumed. What the first scan is straightened by too much
+/// the second lacks, and the other way round: half of the way each time, or they would never meet.
 Solution Tracker::refine(Start& start) {
   constexpr double kSpeedEnough_mps = 0.02;
   constexpr int kMaxRounds = 15;
   Solution solution = try_start(start);
   for (int round = 0; round < kMaxRounds; ++round) {
-    const Twist twist = twist_between({}, solution.trajectory.end(), solution.trajectory.span_s);
-    const double change_mps = (twist.linear_mps - start.twist.linear_mps).norm();
-    start.twist = twist;
+    const Twist found = twist_between({}, solution.trajectory.end(), solution.trajectory.span_s);
+    const double change_mps = (found.linear_mps - start.twist.linear_mps).norm();
+    start.twist.linear_mps = 0.5 * (start.twist.linear_mps + found.linear_mps);
+    start.twist.angular_radps = 0.5 * (start.twist.angular_radps + found.angular_radps);
     solution = try_start(start);
     if (change_mps < kSpeedEnough_mps) break;
   }
@@ -104,93 +124,168 @@ Solution Tracker::refine(Start& start) {
 Solution Tracker::start() {
   Start start = most_compact();
   Solution solution = refine(start);
-  if (start.is_clear) seen_count_ = 0;
+  start_is_clear_ = start.is_clear;
+  if (start.is_clear && !start.moves) seen_count_ = 0;
   return solution;
 }
 
-/// How compact all remembered scans are when the sensor moved so since the first one began.
-int Tracker::footprint_of(const Twist& twist) {
+void Tracker::note_prediction(Seen& seen) const {
+  const Prior prior = predict(seen.timing);
+  note_track(seen, prior.T_begin, moved(prior.T_begin, prior.twist, prior.span_s));
+}
+
+void Tracker::note_track(Seen& seen, const Pose& T_begin, const Pose& T_end) {
+  // Returns that were compensated all belong to the end.
+  seen.T_begin = seen.timing.motion_compensated ? T_end : T_begin;
+  seen.T_end = T_end;
+}
+
+/// How compact all remembered scans are as they were tracked.
+int Tracker::cells_as_tracked() {
   footprint_.clear();
   for (std::size_t k = 0; k < seen_count_; ++k) {
-    const Seen& one = seen_[k];
-    const double since_s = 1e-9 * static_cast<double>(one.timing.end_ns - seen_[0].timing.end_ns);
-    const double span_s = one.timing.motion_compensated ? 0.0 : span_of(one.timing);
-    footprint_.add(one.chosen, since_s - span_s, span_s, twist);
+    footprint_.add(seen_[k].chosen, seen_[k].T_begin, seen_[k].T_end);
   }
   return footprint_.cells();
 }
 
-Tracker::Look Tracker::look(double x_mps, double y_mps) {
-  Twist twist;
-  twist.linear_mps = {x_mps, y_mps, 0.0};
-  return {twist.linear_mps, footprint_of(twist)};
+/// How compact they are when the sensor moved so since the first one began.
+Tracker::Look Tracker::look(const Twist& twist) {
+  footprint_.clear();
+  for (std::size_t k = 0; k < seen_count_; ++k) {
+    const Seen& one = seen_[k];
+    const double end_s = 1e-9 * static_cast<double>(one.timing.end_ns - seen_[0].timing.end_ns);
+    const double span_s = one.timing.motion_compensated ? 0.0 : span_of(one.timing);
+    footprint_.add(one.chosen, moved({}, twist, end_s - span_s), moved({}, twist, end_s));
+  }
+  return {twist, footprint_.cells()};
 }
 
-Tracker::Look Tracker::look_around(Look best) {
-  for (const double step_mps : {0.5, 0.25, 0.125}) {
-    const Eigen::Vector3d about_mps = best.v_mps;
-    for (int x = -2; x <= 2; ++x) {
-      for (int y = -2; y <= 2; ++y) {
-        const Look other = look(about_mps.x() + x * step_mps, about_mps.y() + y * step_mps);
-        if (other.cells < best.cells) best = other;
+Tracker::Look Tracker::look_around(const Twist& about) {
+  constexpr double kTurn = 0.2;  // rad/s for each m/s: far things feel both alike
+  Look best = look(about);
+  for (const double step : {0.5, 0.25, 0.125}) {
+    const Twist middle = best.twist;
+    for (int turn = -1; turn <= 1; ++turn) {
+      for (int x = -2; x <= 2; ++x) {
+        for (int y = -2; y <= 2; ++y) {
+          Twist beside = middle;
+          beside.linear_mps += step * Eigen::Vector3d(x, y, 0.0);
+          beside.angular_radps.z() += kTurn * step * turn;
+          const Look other = look(beside);
+          if (other.cells < best.cells) best = other;
+        }
       }
     }
   }
   return best;
 }
 
-/// The motion along the ground under which the remembered scans fall on each other best, of all
-/// speeds that vehicles have. Standing, unless another is clearly better.
-Tracker::Start Tracker::most_compact() {
-  constexpr double kStep_mps = 1.0, kOther_mps = 3.0;
-  constexpr int kSpeeds = 40, kHeadings = 16;
-  std::array<Look, 1 + kSpeeds * kHeadings> looks;
-  looks[0] = look(0.0, 0.0);
-  std::size_t n = 1;
-  for (int speed = 1; speed <= kSpeeds; ++speed) {
-    for (int heading = 0; heading < kHeadings; ++heading) {
+/// Whether what was seen speaks for the motion with `cells` and against the other. What tells is
+/// in how many cells scans meet, and a cell is hit or missed by a few returns.
+bool Tracker::is_less(int cells, int other_cells, double sigmas) const {
+  const int met = 2 * cells_alone_ - cells - other_cells;
+  return other_cells - cells > sigmas * std::sqrt(static_cast<double>(met));
+}
+
+/// All motions along the ground that vehicles have: the faster, the less they turn.
+void Tracker::look_everywhere() {
+  constexpr double kStep_mps = 1.0, kStep_radps = 0.2, kMost_mps2 = 4.0;
+  constexpr int kSpeeds = 40, kHeadings = 16, kTurns = 10;
+  looks_.clear();
+  looks_.push_back(look({}));
+  for (int turn = -kTurns; turn <= kTurns; ++turn) {
+    Twist twist;
+    twist.angular_radps.z() = kStep_radps * turn;
+    if (turn != 0) looks_.push_back(look(twist));
+    for (int speed = 1; speed <= kSpeeds; ++speed) {
       const double speed_mps = kStep_mps * speed;
-      const double heading_rad = 2.0 * std::numbers::pi * heading / kHeadings;
-      looks[n++] = look(speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad));
+      if (speed_mps * std::abs(twist.angular_radps.z()) > kMost_mps2) break;
+      for (int heading = 0; heading < kHeadings; ++heading) {
+        const double heading_rad = 2.0 * std::numbers::pi * heading / kHeadings;
+        twist.linear_mps = {speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad),
+                            0.0};
+        looks_.push_back(look(twist));
+      }
     }
   }
-  const Look best = *std::min_element(
-      looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.cells < b.cells; });
+}
+
+/// The motion under which the remembered scans fall on each other best. Standing, unless another is
+/// clearly better.
+Tracker::Start Tracker::most_compact() {
   Start start;
-  start.is_clear = std::none_of(looks.begin(), looks.end(), [&](const Look& other) {
-    return (other.v_mps - best.v_mps).norm() > kOther_mps &&
-           !is_clearly_fewer(best.cells, other.cells);
-  });
+  start.is_clear = true;
   start.doubt_mps = kStanding_mps;
-  if (!is_clearly_fewer(best.cells, looks[0].cells)) return start;
-  start.twist.linear_mps = start.believed_mps = look_around(best).v_mps;
-  start.doubt_mps = kStep_mps;
+  const Look standing = look({});
+  const int least = cells_alone_ / static_cast<int>(seen_count_);  // all scans in the same cells
+  if (!is_less(least, standing.cells, kClearly)) return start;
+  look_everywhere();
+  const Look best = *std::min_element(
+      looks_.begin(), looks_.end(), [](const Look& a, const Look& b) { return a.cells < b.cells; });
+  start.is_clear = std::none_of(looks_.begin(), looks_.end(), [&](const Look& other) {
+    return differ(other.twist, best.twist, kOther_mps, kOther_radps) &&
+           !is_less(best.cells, other.cells, kClearly);
+  });
+  if (!is_less(best.cells, standing.cells, kClearly)) return start;
+  start.moves = true;
+  start.twist = look_around(best.twist).twist;
+  start.believed_mps = start.twist.linear_mps;
+  start.doubt_mps = kMoving_mps;
   return start;
 }
 
-/// Takes all scans but the last through a start, as though it had been known.
+/// Takes all scans but the newest through a start, as though it had been known.
 void Tracker::rehearse(Start start) {
   Solution solution = refine(start);
   status_ = TrackingStatus::tracking;
   for (std::size_t k = 1; k + 1 < seen_count_; ++k) {
-    const Prior prior = predict(seen_[k].timing);
-    if (k > 1) solution = solver_.solve(seen_[k].chosen, maps_, prior);
+    Prior prior = predict(seen_[k].timing);
+    if (k > 1) {
+      believe(start, prior);
+      solution = solver_.solve(seen_[k].chosen, maps_, prior);
+    }
     accept(seen_[k].timing, prior, solution);
+    note_track(seen_[k], solution.trajectory.at(0.0), solution.trajectory.end());
     grow_map(seen_[k].timing, seen_[k].for_map, solution);
     ++scan_count_;
   }
 }
 
-/// Puts the tracker on another start where all scans so far speak for it, and makes an end of it
-/// when they speak clearly or are enough.
-void Tracker::decide() {
-  constexpr double kOther_mps = 2.0;
-  const Start compact = most_compact();
-  if ((compact.twist.linear_mps - twist_.linear_mps).norm() > kOther_mps &&
-      is_clearly_fewer(footprint_of(compact.twist), footprint_of(twist_))) {
-    rehearse(compact);
+/// The constant motion nearest to the track so far.
+Twist Tracker::twist_so_far() const {
+  const Seen& newest = seen_[seen_count_ - 1];
+  const double so_far_s = 1e-9 * static_cast<double>(newest.timing.end_ns - seen_[0].timing.end_ns);
+  return twist_between({}, newest.T_end, so_far_s);
+}
+
+/// The motion that all scans so far speak for: near the track, once it is clear that there is none
+/// like it elsewhere.
+Tracker::Start Tracker::best_start(const Twist& tracked) {
+  constexpr double kNearer_mps = 0.25;
+  if (start_is_clear_ && status_ != TrackingStatus::lost) {
+    Start start;
+    start.twist = look_around(tracked).twist;
+    start.believed_mps = start.twist.linear_mps;
+    start.doubt_mps = kNearer_mps;
+    return start;
   }
-  if (compact.is_clear || seen_count_ == kScansToDecide) seen_count_ = 0;
+  Start start = most_compact();
+  start_is_clear_ = start.is_clear;
+  return start;
+}
+
+/// Puts the tracker on another start where all scans so far speak for it, and makes an end of it
+/// when they are enough.
+void Tracker::decide() {
+  constexpr double kOther_mps = 0.5, kOther_radps = 0.1;
+  const Twist tracked = twist_so_far();
+  const Start other = best_start(tracked);
+  if (differ(other.twist, tracked, kOther_mps, kOther_radps) &&
+      is_less(look(other.twist).cells, cells_as_tracked(), kProbably)) {
+    rehearse(other);
+  }
+  if (seen_count_ == kScansToDecide) seen_count_ = 0;
 }
 
 }  // namespace lilo::standard

@@ -6,13 +6,12 @@
 
 namespace lilo::standard {
 
-WeakDirections weak_directions(const Matrix6d& scan_information,
-                               const Matrix6d& prediction_information,
+WeakDirections weak_directions(const Matrix6d& scan_information, const Matrix6d& motion_information,
                                const Eigen::Quaterniond& R_odom_sensor) {
   constexpr double kHalf = 0.5;
   WeakDirections weak;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> solver(scan_information,
-                                                                  prediction_information);
+                                                                  motion_information);
   if (solver.info() != Eigen::Success) return weak;
   for (int k = 0; k < kMaxWeakDirections; ++k) {  // eigenvalues grow
     const double ratio = std::max(0.0, solver.eigenvalues()[k]);

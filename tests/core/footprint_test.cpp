@@ -1,6 +1,7 @@
 #include "core/standard/footprint.hpp"
 
 #include "core/standard/feature_image.hpp"
+#include "core/standard/trajectory.hpp"
 #include "tests/core/analytic_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +44,8 @@ std::vector<std::vector<Feature>> two_scans(const Twist& twist) {
 int cells_under(const std::vector<std::vector<Feature>>& scans, const Twist& supposed) {
   Footprint footprint;
   for (std::size_t k = 0; k < scans.size(); ++k) {
-    footprint.add(scans[k], kSpan_s * static_cast<double>(k), kSpan_s, supposed);
+    const double begin_s = kSpan_s * static_cast<double>(k);
+    footprint.add(scans[k], moved({}, supposed, begin_s), moved({}, supposed, begin_s + kSpan_s));
   }
   return footprint.cells();
 }
