@@ -11,7 +11,7 @@ void Drift::move(const Eigen::Vector3d& by_m) {
 void Drift::inherit(const Matrix6d& alignment) {
   // A part of the map is made of several keyframes, and what one of them errs is known in part to
   // those before. A rough figure: core/README.md says what comes of it.
-  constexpr double kShare = 0.1;
+  constexpr double kShare = 0.006;
   covariance_ += kShare * alignment;
 }
 
