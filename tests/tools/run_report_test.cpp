@@ -23,17 +23,28 @@ TEST(Statistics, PercentilesAreNearestRank) {
   EXPECT_EQ(statistics({}).max, 0.0);
 }
 
+TEST(Statistics, TenthsAreEqualParts) {
+  std::vector<double> values(205);
+  std::iota(values.begin(), values.end(), 0.0);
+  const auto means = means_of_tenths(values);
+  EXPECT_EQ(means[0], 9.5);    // 0 to 19
+  EXPECT_EQ(means[1], 30.0);   // 20 to 40
+  EXPECT_EQ(means[9], 194.0);  // 184 to 204
+  EXPECT_EQ(means_of_tenths({1.0, 2.0})[0], 0.0);
+}
+
 TEST(ProgressBar, FillsFromLeftToRight) {
   EXPECT_EQ(progress_text(0.5, 4), "[##..]  50 %");
   EXPECT_EQ(progress_text(1.2, 4), "[####] 100 %");
   EXPECT_EQ(progress_text(-0.1, 4), "[....]   0 %");
 }
 
-/// Two scans, then the file breaks off.
+/// A few scans, then the file breaks off.
 class BrokenSource : public ScanSource {
  public:
+  explicit BrokenSource(std::uint64_t scans = 2) : scans_(scans) {}
   bool next(Scan& scan) override {
-    if (made_ == 2) return false;
+    if (made_ == scans_) return false;
     scan.clear();
     scan.index = made_++;
     scan.start_ns = static_cast<std::int64_t>(made_) * 100'000'000;
@@ -48,7 +59,7 @@ class BrokenSource : public ScanSource {
   [[nodiscard]] std::string error() const override { return "made.pcap: ends inside a record"; }
 
  private:
-  std::uint64_t made_ = 0;
+  std::uint64_t scans_, made_ = 0;
 };
 
 TEST(OdometryRun, KeepsWhatWasDoneBeforeTheSourceFailed) {
@@ -75,6 +86,21 @@ TEST(RunReport, JsonHasTheDocumentedKeys) {
     EXPECT_TRUE(json["stages_ms"]["decode"][figure].is_number());
   }
   EXPECT_GT(json["peak_rss_mb"].get<double>(), 1.0);
+}
+
+TEST(RunReport, SaysWhatGrowsFromTenthToTenth) {
+  BrokenSource source(40);
+  const OdometryRun run = run_odometry(source, {}, [](const Scan&, const Estimate&) {});
+  const auto tenths = nlohmann::json::parse(to_json(run))["tenths"];
+  for (const char* key :
+       {"cpu_ms_per_scan", "map_size", "correspondences", "iterations", "rss_mb"}) {
+    EXPECT_EQ(tenths[key].size(), 10U) << key;
+  }
+  EXPECT_GT(tenths["rss_mb"][9].get<double>(), 1.0);
+  EXPECT_LE(tenths["rss_mb"][9].get<double>(), run.peak_rss_mb + 1e-6);
+  double sum = 0.0;
+  for (const double mean : tenths["cpu_ms_per_scan"]) sum += mean / 10.0;
+  EXPECT_NEAR(sum, statistics(run.timer.total_ms()).mean, 1e-9);
 }
 
 TEST(RunReport, StagesAddUpToTheTotal) {

@@ -9,20 +9,29 @@
 namespace lilo {
 namespace {
 
-/// VmHWM of /proc/self/status; 0 where the kernel does not say.
-double peak_rss_mb() {
+/// A line of /proc/self/status, in 10^6 bytes: VmHWM is the most memory so far, VmRSS what is held
+/// now. 0 where the kernel does not say.
+double memory_mb(const std::string& name) {
   std::ifstream status("/proc/self/status");
   std::string line;
   while (std::getline(status, line)) {
-    if (!line.starts_with("VmHWM:")) continue;
+    if (!line.starts_with(name + ':')) continue;
     double kib = 0.0;
-    std::istringstream(line.substr(6)) >> kib;
+    std::istringstream(line.substr(name.size() + 1)) >> kib;
     return kib * 1024e-6;
   }
   return 0.0;
 }
 
+void note_size(const Estimate& estimate, OdometryRun& run) {
+  run.map_size.push_back(estimate.map_edge_count + estimate.map_surface_count);
+  run.correspondences.push_back(estimate.correspondence_count);
+  run.iterations.push_back(estimate.iterations);
+  run.rss_mb.push_back(memory_mb("VmRSS"));
+}
+
 }  // namespace
+
 OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const SeenScan& seen) {
   OdometryRun run;
   Odometry odometry(config);
@@ -42,10 +51,11 @@ OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const
     run.recorded_s = static_cast<double>(scan.end_ns - first_ns) * 1e-9;
     run.poses.push_back({estimate.stamp_ns, estimate.T_odom_sensor});
     ++run.status_counts[static_cast<std::size_t>(estimate.status)];
+    note_size(estimate, run);
     seen(scan, estimate);
   }
   run.wall_s = static_cast<double>(busy_ns) * 1e-9;
-  run.peak_rss_mb = peak_rss_mb();
+  run.peak_rss_mb = memory_mb("VmHWM");
   run.failure = source.error();
   run.driver_counts = source.driver_counts();
   run.source_counts = source.source_counts();

@@ -19,6 +19,9 @@ struct OdometryRun {
   DriverCounts driver_counts;
   SourceCounts source_counts;
   StageTimer timer;
+  /// What bounds time and memory, a value a scan: entries of the map, residuals, Gauss-Newton
+  /// steps, memory of this process after it (10^6 bytes).
+  std::vector<double> map_size, correspondences, iterations, rss_mb;
   double wall_s = 0.0;       ///< of reading, decoding and odometry; what `seen` does is left out
   double recorded_s = 0.0;   ///< from the first firing to the last
   double peak_rss_mb = 0.0;  ///< most memory of this process up to here, 10^6 bytes

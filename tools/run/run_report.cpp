@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <utility>
 
@@ -48,6 +49,38 @@ std::string table_line(const std::string& name, const Statistics& ms) {
                      ms.max);
 }
 
+/// What must not grow with the way travelled.
+struct Track {
+  const char* key;
+  const char* name;
+  const std::vector<double>* values;
+  double unit;
+  int decimals;
+};
+
+std::array<Track, 5> tracks(const OdometryRun& run) {
+  return {{{"cpu_ms_per_scan", "CPU ms", &run.timer.total_ms(), 1.0, 2},
+           {"map_size", "map, 1000", &run.map_size, 1e3, 1},
+           {"correspondences", "residuals", &run.correspondences, 1.0, 0},
+           {"iterations", "steps", &run.iterations, 1.0, 2},
+           {"rss_mb", "memory MB", &run.rss_mb, 1.0, 1}}};
+}
+
+std::string tenths_text(const OdometryRun& run) {
+  if (run.poses.size() < 10) return {};
+  std::string text = "mean of tenth    1";
+  for (int k = 2; k <= 10; ++k) text += fmt::format("{:6}", k);
+  text += "  10th/2nd\n";
+  for (const Track& track : tracks(run)) {
+    const auto means = means_of_tenths(*track.values);
+    text += fmt::format("  {:<10}", track.name);
+    for (const double mean : means)
+      text += fmt::format("{:6.{}f}", mean / track.unit, track.decimals);
+    text += means[1] > 0.0 ? fmt::format("{:10.3f}\n", means[9] / means[1]) : "\n";
+  }
+  return text;
+}
+
 std::string status_text(const OdometryRun& run) {
   std::string text;
   for (std::size_t k = 0; k < kStatusNames.size(); ++k) {
@@ -83,6 +116,10 @@ std::string to_json(const OdometryRun& run) {
   json["wall_s"] = run.wall_s;
   json["real_time_factor"] = real_time_factor(run);
   json["peak_rss_mb"] = run.peak_rss_mb;
+  if (run.poses.size() >= 10) {
+    for (const Track& track : tracks(run))
+      json["tenths"][track.key] = means_of_tenths(*track.values);
+  }
   return json.dump(2) + "\n";
 }
 
@@ -101,7 +138,7 @@ std::string to_text(const OdometryRun& run) {
   fmt::format_to(out, "real-time factor {:.1f} ({:.1f} s recorded, {:.2f} s needed)\n",
                  real_time_factor(run), run.recorded_s, run.wall_s);
   fmt::format_to(out, "peak memory      {:.0f} MB\n", run.peak_rss_mb);
-  return text;
+  return text + tenths_text(run);
 }
 
 }  // namespace lilo

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 namespace lilo {
@@ -13,5 +14,9 @@ struct Statistics {
 };
 
 Statistics statistics(std::vector<double> values);
+
+/// Means of the first tenth of the values, the second, and so on, for what may grow with time; all
+/// 0 of fewer than ten.
+std::array<double, 10> means_of_tenths(const std::vector<double>& values);
 
 }  // namespace lilo
