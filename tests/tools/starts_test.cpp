@@ -1,11 +1,8 @@
 // The default profile, switched on again and again all along simulated drives: what it says of
 // itself against the truth.
 #include "core/odometry.hpp"
-#include "drivers/scan_source.hpp"
 #include "tests/drivers/data_dir.hpp"
-#include "tests/tools/temporary_folder.hpp"
-#include "tools/sim/simulate.hpp"
-#include "tools/trajectory.hpp"
+#include "tests/tools/recording.hpp"
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
@@ -14,10 +11,11 @@
 #include <cstdio>
 #include <numbers>
 #include <string>
-#include <vector>
 
 namespace lilo {
 namespace {
+
+using test::Recording;
 
 constexpr std::size_t kScans = 40;  // after each start: 4 s
 
@@ -29,36 +27,18 @@ struct Drive {
 };
 std::ostream& operator<<(std::ostream& out, const Drive& drive) { return out << drive.name; }
 
-struct Recording {
-  std::vector<Scan> scans;
-  std::vector<Pose> truth;  ///< at each scan's end
-};
-
-Recording read(const std::string& folder) {
-  Recording recording;
-  const auto source = open_scans(folder + "/data.pcap", SensorConfig{});
-  Scan scan;
-  while (source->next(scan)) recording.scans.push_back(scan);
-  for (const StampedPose& truth : read_trajectory(folder + "/gt_end.tum").poses) {
-    recording.truth.push_back(truth.pose);
-  }
-  return recording;
-}
-
 class Starts : public testing::TestWithParam<Drive> {
  protected:
   static Recording recording() {
     const Drive& drive = GetParam();
-    if (drive.world == nullptr) return read(test::data_path(drive.name));
+    if (drive.world == nullptr) return test::read_recording(test::data_path(drive.name));
     sim::SimOptions options;
     options.world = drive.world;
     options.seed = 3;
     options.motion.speed_mps = drive.speed_mps;
     options.motion.start_in_motion = true;
     options.motion.duration_s = 12.0;
-    const TemporaryFolder folder;
-    sim::simulate(options, folder.path(), [](double) {});
-    return read(folder.path());
+    return test::simulated(options);
   }
 };
 
