@@ -102,7 +102,8 @@ std::string ChildProcess::standard_error() const { return contents(error_path_);
 
 Finished run_to_end(const std::vector<std::string>& arguments) {
   ChildProcess child(arguments);
-  const auto code = child.wait(std::chrono::seconds(20));
+  // For one that hangs: a busy machine simulates slowly.
+  const auto code = child.wait(std::chrono::seconds(90));
   EXPECT_TRUE(code.has_value()) << arguments[0] << " still runs";
   return {code.value_or(-1), child.standard_output(), child.standard_error()};
 }

@@ -29,7 +29,8 @@ class Save : public testing::Test {
 
 // All poses that were sent, as they were sent.
 TEST_F(Save, TheTrajectoryIsWhatWasPublished) {
-  Lilod lilod("", {{"STATE_DIRECTORY", folder_}});
+  // Slots for all of the turns: nothing may be dropped on a machine that is slow.
+  Lilod lilod("realtime:\n  ring_slots: 16\n", {{"STATE_DIRECTORY", folder_}});
   ASSERT_TRUE(lilod.wait_ready());
   Sensor().turn(lilod, 6.0);
   std::vector<json> poses;
