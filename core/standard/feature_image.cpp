@@ -37,7 +37,8 @@ const std::vector<Feature>& FeatureImage::build(const Scan& scan) {
 void FeatureImage::begin(const BeamTable& beams) {
   beams_ = beams;
   const auto size = static_cast<std::size_t>(beams.ring_count) * static_cast<std::size_t>(columns_);
-  pixels_.assign(size, Pixel{});
+  pixels_.resize(size);
+  filled_.assign(static_cast<std::size_t>(columns_), Filled{});
   for (std::vector<Feature>* features : {&features_, &last_features_}) {
     if (features->capacity() < size) features->resize(size);  // touches it all
     features->clear();
@@ -87,10 +88,12 @@ void FeatureImage::project(std::span<const Return> returns) {
     const float range2 = flat2 + r.z_m * r.z_m;
     if (!(range2 >= nearest2_ && range2 <= farthest2_) || r.ring >= rows) continue;  // and NaN
     const int column = column_of(r.azimuth_rad);
-    Pixel& pixel =
-        pixels_[static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + r.ring];
-    if (pixel.flat_m > 0.0F) continue;
-    pixel = {r.x_m, r.y_m, r.z_m, std::sqrt(flat2), static_cast<float>(r.t_ns)};
+    const std::uint64_t bit = std::uint64_t{1} << (r.ring % 64U);
+    std::uint64_t& filled = filled_[static_cast<std::size_t>(column)][r.ring / 64U];
+    if ((filled & bit) != 0) continue;
+    filled |= bit;
+    pixels_[static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + r.ring] = {
+        r.x_m, r.y_m, r.z_m, r.t_ns};
     if (first_column_ < 0) first_column_ = (column + margin_) % columns_;
     const int place = place_of(column);
     if (place < classified_) disturbed_ = true;
@@ -109,15 +112,28 @@ void FeatureImage::classify_until(int place) {
   }
 }
 
-FeatureImage::Step FeatureImage::step_between(const Pixel& lower, const Pixel& upper,
+FeatureImage::Flats FeatureImage::flats_of(int column) const {
+  const int rows = beams_.ring_count;
+  const Pixel* pixels = pixels_.data() + static_cast<std::ptrdiff_t>(column) * rows;
+  const Filled& filled = filled_[static_cast<std::size_t>(column)];
+  Flats flats_m;
+  for (int ring = 0; ring < rows; ++ring) {
+    const auto k = static_cast<std::size_t>(ring);
+    const Pixel& p = pixels[ring];
+    const bool is_filled = (filled[k / 64] >> (k % 64) & 1U) != 0;
+    flats_m[k] = is_filled ? std::sqrt(p.x_m * p.x_m + p.y_m * p.y_m) : 0.0F;
+  }
+  return flats_m;
+}
+
+FeatureImage::Step FeatureImage::step_between(const Pixel* lower, const float* flats_m,
                                               float gap_rad) {
-  if (lower.flat_m <= 0.0F || upper.flat_m <= 0.0F) return {};
-  const float dd = upper.flat_m - lower.flat_m;
-  const float dz = upper.z_m - lower.z_m;
+  const float dd = flats_m[1] - flats_m[0];
+  const float dz = lower[1].z_m - lower[0].z_m;
   const bool steep = std::abs(dz) > kSteep * std::abs(dd);
   // Rings are range * gap apart across the ray, and farther on what the ray grazes.
-  const float across_m = lower.flat_m * gap_rad;
-  const float grazing = std::max(std::abs(lower.z_m) / lower.flat_m, gap_rad);
+  const float across_m = flats_m[0] * gap_rad;
+  const float grazing = std::max(std::abs(lower->z_m) / flats_m[0], gap_rad);
   const float reach_m = kSameSurface * (steep ? across_m : across_m / grazing);
   return {dd * dd + dz * dz < reach_m * reach_m, steep};
 }
@@ -125,15 +141,16 @@ FeatureImage::Step FeatureImage::step_between(const Pixel& lower, const Pixel& u
 void FeatureImage::classify_column(int column, std::vector<Feature>& out) const {
   const int rows = beams_.ring_count;
   const Pixel* pixels = pixels_.data() + static_cast<std::ptrdiff_t>(column) * rows;
+  const Flats flats_m = flats_of(column);
   Step below;
   for (int ring = 0; ring < rows; ++ring) {
     Step above;
-    if (ring + 1 < rows) {
-      const auto k = static_cast<std::size_t>(ring);
-      above = step_between(pixels[ring], pixels[ring + 1],
+    const auto k = static_cast<std::size_t>(ring);
+    if (ring + 1 < rows && flats_m[k] > 0.0F && flats_m[k + 1] > 0.0F) {
+      above = step_between(pixels + ring, flats_m.data() + k,
                            beams_.elevation_rad[k + 1] - beams_.elevation_rad[k]);
     }
-    if (pixels[ring].flat_m > 0.0F) add_feature(pixels, ring, below, above, out);
+    if (flats_m[k] > 0.0F) add_feature(pixels, ring, below, above, out);
     below = above;
   }
 }
@@ -145,10 +162,15 @@ void FeatureImage::add_feature(const Pixel* column, int ring, Step below, Step a
   const bool steep = (above.connected && above.steep) || (below.connected && below.steep);
   if (flat && steep) return;          // a kerb or the foot of a wall: neither
   if (flat && p.z_m >= 0.0F) return;  // a roof or a canopy seen from below
-  Feature f{
-      p.x_m,  p.y_m, p.z_m,
-      p.t_ns,  // until finish()
-      0.0F,   0.0F,  0.0F,  flat ? Kind::ground : Kind::structure, static_cast<std::uint8_t>(ring)};
+  Feature f{p.x_m,
+            p.y_m,
+            p.z_m,
+            static_cast<float>(p.t_ns),  // until finish()
+            0.0F,
+            0.0F,
+            0.0F,
+            flat ? Kind::ground : Kind::structure,
+            static_cast<std::uint8_t>(ring)};
   if (above.connected || below.connected) {
     const Pixel& neighbour = above.connected ? column[ring + 1] : column[ring - 1];
     f.dx_m = neighbour.x_m - p.x_m;

@@ -2,6 +2,7 @@
 
 #include "core/scan.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -56,9 +57,11 @@ class FeatureImage {
  private:
   struct Pixel {
     float x_m, y_m, z_m;
-    float flat_m;  // distance from the sensor's axis; 0: empty
-    float t_ns;
+    std::int32_t t_ns;
   };
+  using Filled = std::array<std::uint64_t, kMaxRings / 64>;  // a bit for each ring
+  /// Distances from the sensor's axis of a column's pixels; 0: empty.
+  using Flats = std::array<float, kMaxRings>;
   struct Step {
     bool connected = false;  // one surface
     bool steep = false;
@@ -68,15 +71,18 @@ class FeatureImage {
   [[nodiscard]] int place_of(int column) const;
   void classify_until(int place);
   void classify_column(int column, std::vector<Feature>& out) const;
+  [[nodiscard]] Flats flats_of(int column) const;
   static void add_feature(const Pixel* column, int ring, Step below, Step above,
                           std::vector<Feature>& out);
-  static Step step_between(const Pixel& lower, const Pixel& upper, float gap_rad);
+  /// From the pixel of a ring to that of the next, both filled.
+  static Step step_between(const Pixel* lower, const float* flats_m, float gap_rad);
 
   int columns_;
   int margin_;  // in columns
   float nearest2_, farthest2_;
   BeamTable beams_;
-  std::vector<Pixel> pixels_;
+  std::vector<Pixel> pixels_;   // valid where filled
+  std::vector<Filled> filled_;  // of every column; apart, because most returns only ask this
   std::vector<Feature> features_;
   std::vector<Feature> last_features_;  // of columns to the right of straight behind
 
