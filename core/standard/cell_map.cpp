@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -43,7 +44,7 @@ CellMap::CellMap(const CellMapConfig& config)
     : config_(config),
       per_m_(1.0 / static_cast<double>(config.cell_m)),
       mask_(std::bit_ceil(static_cast<std::size_t>(config.capacity) * 2) - 1),
-      slots_(mask_ + 1, -1) {
+      slots_(mask_ + 1) {
   const auto capacity = static_cast<std::size_t>(config.capacity);
   cells_.reserve(capacity);
   sums_.reserve(capacity);
@@ -69,17 +70,38 @@ std::size_t CellMap::slot_of(const Index& i) const {
   return static_cast<std::size_t>(h + static_cast<std::uint32_t>(i.z)) & mask_;
 }
 
-std::int32_t CellMap::find_cell(const Index& i) const {
-  for (std::size_t slot = slot_of(i); slots_[slot] >= 0; slot = (slot + 1) & mask_) {
-    if (cells_[static_cast<std::size_t>(slots_[slot])].index == i) return slots_[slot];
+std::uint32_t CellMap::tag_of(const Index& i) {
+  return (static_cast<std::uint32_t>(i.x) & 0x7FFU) |
+         (static_cast<std::uint32_t>(i.y) & 0x7FFU) << 11U |
+         (static_cast<std::uint32_t>(i.z) & 0x3FFU) << 22U;
+}
+
+CellMap::Place CellMap::place_of(const Eigen::Vector3d& point_m) const {
+  Place place{index_of(point_m)};
+  place.slot = slot_of(place.index);
+  __builtin_prefetch(&slots_[place.slot]);
+  return place;
+}
+
+std::int32_t CellMap::find_cell(const Place& place) const {
+  const std::uint32_t tag = tag_of(place.index);
+  for (std::size_t slot = place.slot; slots_[slot].at >= 0; slot = (slot + 1) & mask_) {
+    if (slots_[slot].tag == tag) return slots_[slot].at;
   }
   return -1;
 }
 
-std::int32_t CellMap::find_or_add(const Index& i) {
-  std::size_t slot = slot_of(i);
-  for (; slots_[slot] >= 0; slot = (slot + 1) & mask_) {
-    if (cells_[static_cast<std::size_t>(slots_[slot])].index == i) return slots_[slot];
+std::int32_t CellMap::cell_at(const Place& place) const {
+  const std::int32_t at = find_cell(place);
+  if (at >= 0) __builtin_prefetch(&cells_[static_cast<std::size_t>(at)]);
+  return at;
+}
+
+std::int32_t CellMap::find_or_add(const Place& place) {
+  const std::uint32_t tag = tag_of(place.index);
+  std::size_t slot = place.slot;
+  for (; slots_[slot].at >= 0; slot = (slot + 1) & mask_) {
+    if (slots_[slot].tag == tag) return slots_[slot].at;
   }
   if (used_ == config_.capacity) {
     ++refused_;
@@ -95,16 +117,16 @@ std::int32_t CellMap::find_or_add(const Index& i) {
     cells_[static_cast<std::size_t>(at)] = Cell{};
     sums_[static_cast<std::size_t>(at)] = Sums{};
   }
-  slots_[slot] = at;
+  slots_[slot] = {at, tag};
   ++used_;
-  cells_[static_cast<std::size_t>(at)].index = i;
+  cells_[static_cast<std::size_t>(at)].index = place.index;
   cells_[static_cast<std::size_t>(at)].born = keyframe_;
   return at;
 }
 
-void CellMap::insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
-  const Index i = index_of(point_m);
-  const std::int32_t at = find_or_add(i);
+void CellMap::insert(const Place& place, const Eigen::Vector3d& point_m,
+                     const Eigen::Vector3f& reach_m) {
+  const std::int32_t at = find_or_add(place);
   if (at < 0) return;
   Sums& sums = sums_[static_cast<std::size_t>(at)];
   if (sums.count >= config_.memory) {
@@ -113,7 +135,7 @@ void CellMap::insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reac
     sums.point *= kept;
     sums.square *= kept;
   }
-  const Eigen::Vector3f p = (point_m - center_of(i)).cast<float>();
+  const Eigen::Vector3f p = (point_m - center_of(place.index)).cast<float>();
   // Seen through a window of three cells, a longer reach is just "all of it".
   const float window_m = 3.0F * config_.cell_m;
   const float excess = std::max(1.0F, reach_m.squaredNorm() / (window_m * window_m));
@@ -122,30 +144,42 @@ void CellMap::insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reac
   sums.square += outer(p) + outer(reach_m) / (12.0F * excess);  // variance of an even spread
 }
 
-Match CellMap::find(const Eigen::Vector3d& point_m) {
-  const Index i = index_of(point_m);
-  const std::int32_t at = find_cell(i);
+Match CellMap::match(std::int32_t at, const Eigen::Vector3d& point_m) {
   if (at < 0) return {};
   Cell& cell = cells_[static_cast<std::size_t>(at)];
   if (keyframe_ >= cell.refit_at) fit(cell);
   if (cell.information.isZero(0.0F)) return {};
-  return {(point_m - center_of(i)).cast<float>() - cell.mean_m, &cell.information};
+  return {(point_m - center_of(cell.index)).cast<float>() - cell.mean_m, &cell.information};
 }
 
 CellMap::Sums CellMap::sums_around(const Index& i) const {
-  Sums all;
+  std::array<Place, 27> places;
+  std::size_t n = 0;
   for (std::int32_t x = -1; x <= 1; ++x) {
     for (std::int32_t y = -1; y <= 1; ++y) {
       for (std::int32_t z = -1; z <= 1; ++z) {
-        const std::int32_t at = find_cell({i.x + x, i.y + y, i.z + z});
-        if (at < 0) continue;
-        const Sums& one = sums_[static_cast<std::size_t>(at)];
-        const Eigen::Vector3f o = config_.cell_m * Eigen::Vector3i(x, y, z).cast<float>();
-        all.count += one.count;
-        all.point += one.point + one.count * o;
-        all.square += one.square + twice_outer(o, one.point) + one.count * outer(o);
+        places[n].index = {i.x + x, i.y + y, i.z + z};
+        places[n].slot = slot_of(places[n].index);
+        __builtin_prefetch(&slots_[places[n].slot]);
+        ++n;
       }
     }
+  }
+  std::array<std::int32_t, 27> at{};
+  for (n = 0; n < places.size(); ++n) {
+    at[n] = find_cell(places[n]);
+    if (at[n] >= 0) __builtin_prefetch(&sums_[static_cast<std::size_t>(at[n])]);
+  }
+  Sums all;
+  for (n = 0; n < places.size(); ++n) {
+    if (at[n] < 0) continue;
+    const Sums& one = sums_[static_cast<std::size_t>(at[n])];
+    const Index& j = places[n].index;
+    const Eigen::Vector3f o =
+        config_.cell_m * Eigen::Vector3i(j.x - i.x, j.y - i.y, j.z - i.z).cast<float>();
+    all.count += one.count;
+    all.point += one.point + one.count * o;
+    all.square += one.square + twice_outer(o, one.point) + one.count * outer(o);
   }
   return all;
 }
@@ -168,16 +202,16 @@ void CellMap::fit(Cell& cell) const {
 }
 
 void CellMap::append_means(std::vector<Eigen::Vector3f>& points_m) const {
-  for (const std::int32_t at : slots_) {
-    if (at < 0) continue;
-    const Sums& sums = sums_[static_cast<std::size_t>(at)];
-    const Eigen::Vector3d center = center_of(cells_[static_cast<std::size_t>(at)].index);
+  for (const Slot& slot : slots_) {
+    if (slot.at < 0) continue;
+    const Sums& sums = sums_[static_cast<std::size_t>(slot.at)];
+    const Eigen::Vector3d center = center_of(cells_[static_cast<std::size_t>(slot.at)].index);
     points_m.emplace_back(center.cast<float>() + sums.point / sums.count);
   }
 }
 
 void CellMap::clear() {
-  std::fill(slots_.begin(), slots_.end(), -1);
+  std::fill(slots_.begin(), slots_.end(), Slot{});
   cells_.clear();
   sums_.clear();
   free_.clear();
@@ -185,24 +219,24 @@ void CellMap::clear() {
 }
 
 void CellMap::remove(std::size_t slot) {
-  free_.push_back(slots_[slot]);
+  free_.push_back(slots_[slot].at);
   --used_;
   // Backward shift: later entries of the probe chain move into the hole, no tombstones.
   std::size_t hole = slot;
-  for (std::size_t next = (hole + 1) & mask_; slots_[next] >= 0; next = (next + 1) & mask_) {
-    const std::size_t home = slot_of(cells_[static_cast<std::size_t>(slots_[next])].index);
+  for (std::size_t next = (hole + 1) & mask_; slots_[next].at >= 0; next = (next + 1) & mask_) {
+    const std::size_t home = slot_of(cells_[static_cast<std::size_t>(slots_[next].at)].index);
     if (((next - home) & mask_) < ((next - hole) & mask_)) continue;
     slots_[hole] = slots_[next];
     hole = next;
   }
-  slots_[hole] = -1;
+  slots_[hole] = Slot{};
 }
 
 void CellMap::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
   const std::size_t share = (mask_ + 1) / kSweepShare;
   for (std::size_t n = 0; n < share; ++n) {
-    if (slots_[sweep_] >= 0) {
-      const Index& i = cells_[static_cast<std::size_t>(slots_[sweep_])].index;
+    if (slots_[sweep_].at >= 0) {
+      const Index& i = cells_[static_cast<std::size_t>(slots_[sweep_].at)].index;
       if ((center_of(i) - center_m).squaredNorm() > radius_m * radius_m) {
         remove(sweep_);
         continue;  // another cell may have moved into this slot

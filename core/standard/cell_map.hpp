@@ -33,16 +33,35 @@ struct CellMapConfig {
 /// Memory is reserved at construction. Not thread-safe.
 class CellMap {
  public:
+  struct Index {
+    std::int32_t x, y, z;
+  };
+  /// A cell's place in the table, whether it is there or not.
+  struct Place {
+    Index index{};
+    std::size_t slot = 0;
+  };
+
   explicit CellMap(const CellMapConfig& config);
 
   /// Adds a point of the odometry frame. `reach_m`: vector to the next sampled point on the same
   /// surface. The surface between the two was not seen and counts as spread; without it a single
   /// ring on the ground looks like a plane through its own rays, blind to pitch ("cone lock").
-  void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m);
+  void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
+    insert(place_of(point_m), point_m, reach_m);
+  }
+  /// With the point's place_of(), asked some points ahead.
+  void insert(const Place& place, const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m);
 
   /// The distribution around a point. Fits are cached: a young cell is fitted again after every
   /// end_keyframe(), an older one after every sixth.
-  Match find(const Eigen::Vector3d& point_m);
+  Match find(const Eigen::Vector3d& point_m) { return match(cell_at(place_of(point_m)), point_m); }
+
+  /// find() in three steps. Each but the last asks the memory for what the next one reads; who
+  /// takes them for many points in turn does not wait for it.
+  [[nodiscard]] Place place_of(const Eigen::Vector3d& point_m) const;
+  [[nodiscard]] std::int32_t cell_at(const Place& place) const;
+  Match match(std::int32_t cell, const Eigen::Vector3d& point_m);
 
   void end_keyframe() { ++keyframe_; }
 
@@ -60,9 +79,12 @@ class CellMap {
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
 
  private:
-  struct Index {
-    std::int32_t x, y, z;
-    bool operator==(const Index&) const = default;
+  /// An entry of the hash table. The tag is the index, cut to what differs between cells of one
+  /// window of 2048 x 2048 x 1024 cells, so that a cell need not be read to know that it is
+  /// another.
+  struct Slot {
+    std::int32_t at = -1;  // in cells_ and sums_; -1: empty
+    std::uint32_t tag = 0;
   };
   /// What find() reads: one cache line.
   struct alignas(64) Cell {
@@ -82,8 +104,9 @@ class CellMap {
   [[nodiscard]] Index index_of(const Eigen::Vector3d& p) const;
   [[nodiscard]] Eigen::Vector3d center_of(const Index& i) const;
   [[nodiscard]] std::size_t slot_of(const Index& i) const;
-  [[nodiscard]] std::int32_t find_cell(const Index& i) const;
-  std::int32_t find_or_add(const Index& i);
+  [[nodiscard]] static std::uint32_t tag_of(const Index& i);
+  [[nodiscard]] std::int32_t find_cell(const Place& place) const;
+  std::int32_t find_or_add(const Place& place);
   [[nodiscard]] Sums sums_around(const Index& i) const;
   void fit(Cell& cell) const;
   void remove(std::size_t slot);
@@ -91,7 +114,7 @@ class CellMap {
   CellMapConfig config_;
   double per_m_;
   std::size_t mask_;
-  std::vector<std::int32_t> slots_;  // index into cells_ and sums_, or -1
+  std::vector<Slot> slots_;
   std::vector<Cell> cells_;
   std::vector<Sums> sums_;
   std::vector<std::int32_t> free_;

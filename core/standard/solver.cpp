@@ -89,6 +89,25 @@ int LocalMaps::size() const {
          structure_coarse.size();
 }
 
+/// Places the next features and looks for their cells in the fine maps, many at a time so that the
+/// memory's answers overlap. Returns how many.
+std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t first,
+                            std::size_t stride, const LocalMaps& maps) {
+  std::size_t n = 0;
+  for (std::size_t k = first; k < features.size() && n < asked_.size(); k += stride, ++n) {
+    Asked& one = asked_[n];
+    const Feature& f = features[k];
+    one.feature = &f;
+    one.turned_m = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
+    one.point_m = one.turned_m.cast<double>() + sampled_.origin_m(f.s);
+    one.place = maps.fine(f.kind).place_of(one.point_m);
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    asked_[j].cell = maps.fine(asked_[j].feature->kind).cell_at(asked_[j].place);
+  }
+  return n;
+}
+
 void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                         Solution& solution) {
   sample(solution.trajectory, sampled_);
@@ -96,49 +115,53 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
     bin.H.setZero();
     bin.b.setZero();
   }
-  const float ground_c2 = config_.ground_kernel * config_.ground_kernel;
-  const float structure_c2 = config_.structure_kernel * config_.structure_kernel;
-  double weights = 0.0, squares = 0.0, structure = 0.0;
+  Sums sums;
   solution.asked = solution.matched = 0;
   const float data_weight = config_.data_weight * static_cast<float>(stride);
-  for (std::size_t k = 0; k < features.size(); k += stride) {
-    const Feature& f = features[k];
-    ++solution.asked;
-    const Eigen::Vector3f turned = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
-    const Eigen::Vector3d q = turned.cast<double>() + sampled_.origin_m(f.s);
-    const bool ground = f.kind == Kind::ground;
-    Match match = (ground ? maps.ground_fine : maps.structure_fine).find(q);
-    if (match.information == nullptr) {
-      match = (ground ? maps.ground_coarse : maps.structure_coarse).find(q);
+  for (std::size_t k = 0, n = 0; k < features.size(); k += n * stride) {
+    n = look_up(features, k, stride, maps);
+    solution.asked += static_cast<int>(n);
+    for (std::size_t j = 0; j < n; ++j) {
+      const Asked& one = asked_[j];
+      Match match = maps.fine(one.feature->kind).match(one.cell, one.point_m);
+      if (match.information == nullptr) {
+        match = maps.coarse(one.feature->kind).find(one.point_m);
+      }
+      if (match.information == nullptr) continue;
+      ++solution.matched;
+      add_residual(one, match, data_weight, sums);
     }
-    if (match.information == nullptr) continue;
-    const Eigen::Vector3f& r = match.from_mean_m;
-    const Symmetric& i = *match.information;
-    Eigen::Matrix3f information;
-    information << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
-    const Eigen::Vector3f Or = information * r;
-    const float square = r.dot(Or);
-    const float c2 = ground ? ground_c2 : structure_c2;
-    const float robust = 1.0F / (1.0F + square / c2);
-    const float w = robust * data_weight;
-    ++solution.matched;
-    weights += static_cast<double>(robust);
-    if (!ground) structure += static_cast<double>(robust);
-    squares += static_cast<double>(robust * square);
-    // J = [-[turned]x  I]: J'OJ and J'Or in blocks.
-    Eigen::Matrix3f cross;
-    cross << 0, -turned.z(), turned.y(), turned.z(), 0, -turned.x(), -turned.y(), turned.x(), 0;
-    const Eigen::Matrix3f CO = cross * information;  // -J_w' O = [turned]x O
-    Bin& bin = bins_[static_cast<std::size_t>(std::lround(f.s * kBins))];
-    bin.H.topLeftCorner<3, 3>() += (w * (CO * cross.transpose())).cast<double>();
-    bin.H.topRightCorner<3, 3>() += (w * CO).cast<double>();
-    bin.H.bottomRightCorner<3, 3>() += (w * information).cast<double>();
-    bin.b.head<3>() -= (w * (cross * Or)).cast<double>();
-    bin.b.tail<3>() -= (w * Or).cast<double>();
   }
-  solution.inliers = weights;
-  solution.structure_inliers = structure;
-  solution.mean_square = weights > 0.0 ? squares / weights : 0.0;
+  solution.inliers = sums.weights;
+  solution.structure_inliers = sums.structure;
+  solution.mean_square = sums.weights > 0.0 ? sums.squares / sums.weights : 0.0;
+}
+
+void Solver::add_residual(const Asked& one, const Match& match, float data_weight, Sums& sums) {
+  const bool ground = one.feature->kind == Kind::ground;
+  const Eigen::Vector3f& r = match.from_mean_m;
+  const Symmetric& i = *match.information;
+  Eigen::Matrix3f information;
+  information << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
+  const Eigen::Vector3f Or = information * r;
+  const float square = r.dot(Or);
+  const float kernel = ground ? config_.ground_kernel : config_.structure_kernel;
+  const float robust = 1.0F / (1.0F + square / (kernel * kernel));
+  const float w = robust * data_weight;
+  sums.weights += static_cast<double>(robust);
+  if (!ground) sums.structure += static_cast<double>(robust);
+  sums.squares += static_cast<double>(robust * square);
+  // J = [-[turned]x  I]: J'OJ and J'Or in blocks.
+  const Eigen::Vector3f& p = one.turned_m;
+  Eigen::Matrix3f cross;
+  cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
+  const Eigen::Matrix3f CO = cross * information;  // -J_w' O = [p]x O
+  Bin& bin = bins_[static_cast<std::size_t>(std::lround(one.feature->s * kBins))];
+  bin.H.topLeftCorner<3, 3>() += (w * (CO * cross.transpose())).cast<double>();
+  bin.H.topRightCorner<3, 3>() += (w * CO).cast<double>();
+  bin.H.bottomRightCorner<3, 3>() += (w * information).cast<double>();
+  bin.b.head<3>() -= (w * (cross * Or)).cast<double>();
+  bin.b.tail<3>() -= (w * Or).cast<double>();
 }
 
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior) {

@@ -17,6 +17,12 @@ namespace lilo::standard {
 struct LocalMaps {
   CellMap ground_fine, ground_coarse, structure_fine, structure_coarse;
 
+  CellMap& fine(Kind kind) { return kind == Kind::ground ? ground_fine : structure_fine; }
+  CellMap& coarse(Kind kind) { return kind == Kind::ground ? ground_coarse : structure_coarse; }
+  [[nodiscard]] const CellMap& fine(Kind kind) const {
+    return kind == Kind::ground ? ground_fine : structure_fine;
+  }
+
   void end_keyframe();
   void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
   void clear();
@@ -74,12 +80,27 @@ class Solver {
     Matrix6d H;
     Vector6d b;
   };
+  /// A feature under the trajectory, and its cell.
+  struct Asked {
+    const Feature* feature = nullptr;
+    Eigen::Vector3f turned_m;  // in the odometry's axes, from the sensor
+    Eigen::Vector3d point_m;   // in the odometry's frame
+    CellMap::Place place;
+    std::int32_t cell = -1;
+  };
+  struct Sums {
+    double weights = 0.0, squares = 0.0, structure = 0.0;
+  };
   void accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                   Solution& solution);
+  std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride,
+                      const LocalMaps& maps);
+  void add_residual(const Asked& one, const Match& match, float data_weight, Sums& sums);
 
   SolverConfig config_;
   Sampled sampled_;
   std::array<Bin, kBins + 1> bins_;
+  std::array<Asked, 32> asked_;
 };
 
 /// Information of the change between two knots `dt_s` apart under white noise on acceleration:

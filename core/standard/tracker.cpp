@@ -3,6 +3,7 @@
 #include "core/standard/weak_directions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -212,13 +213,29 @@ void Tracker::hold(const std::vector<Feature>& features, const Trajectory& traje
 void Tracker::insert_held() {
   held_.waiting = false;
   sample(held_.trajectory, sampled_);
-  for (const Feature& f : held_.features) {
-    const Eigen::Vector3d p =
-        sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m}).cast<double>() + sampled_.origin_m(f.s);
-    const Eigen::Vector3f reach = sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m});
-    const bool ground = f.kind == Kind::ground;
-    (ground ? maps_.ground_fine : maps_.structure_fine).insert(p, reach);
-    (ground ? maps_.ground_coarse : maps_.structure_coarse).insert(p, reach);
+  // Some at a time, so that the memory's answers overlap.
+  struct Waiting {
+    Eigen::Vector3d point_m;
+    CellMap::Place fine, coarse;
+  };
+  std::array<Waiting, 16> waiting;
+  for (std::size_t first = 0; first < held_.features.size(); first += waiting.size()) {
+    const std::size_t n = std::min(waiting.size(), held_.features.size() - first);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Feature& f = held_.features[first + k];
+      Waiting& one = waiting[k];
+      one.point_m =
+          sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m}).cast<double>() + sampled_.origin_m(f.s);
+      one.fine = maps_.fine(f.kind).place_of(one.point_m);
+      one.coarse = maps_.coarse(f.kind).place_of(one.point_m);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      const Feature& f = held_.features[first + k];
+      const Waiting& one = waiting[k];
+      const Eigen::Vector3f reach = sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m});
+      maps_.fine(f.kind).insert(one.fine, one.point_m, reach);
+      maps_.coarse(f.kind).insert(one.coarse, one.point_m, reach);
+    }
   }
   maps_.end_keyframe();
 }
