@@ -24,6 +24,12 @@ Symmetric outer(const Eigen::Vector3f& v) {
   return o;
 }
 
+/// std::floor() is a call where the processor need not have SSE 4.1.
+std::int32_t floor_of(double v) {
+  const auto towards_zero = static_cast<std::int32_t>(v);
+  return towards_zero - static_cast<std::int32_t>(v < towards_zero);
+}
+
 /// a b' + b a'
 Symmetric twice_outer(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   Symmetric o;
@@ -52,9 +58,7 @@ CellMap::CellMap(const CellMapConfig& config)
 }
 
 CellMap::Index CellMap::index_of(const Eigen::Vector3d& p) const {
-  return {static_cast<std::int32_t>(std::floor(p.x() * per_m_)),
-          static_cast<std::int32_t>(std::floor(p.y() * per_m_)),
-          static_cast<std::int32_t>(std::floor(p.z() * per_m_))};
+  return {floor_of(p.x() * per_m_), floor_of(p.y() * per_m_), floor_of(p.z() * per_m_)};
 }
 
 Eigen::Vector3d CellMap::center_of(const Index& i) const {
@@ -97,11 +101,14 @@ std::int32_t CellMap::cell_at(const Place& place) const {
   return at;
 }
 
-std::int32_t CellMap::find_or_add(const Place& place) {
+std::int32_t CellMap::open(const Place& place) {
   const std::uint32_t tag = tag_of(place.index);
   std::size_t slot = place.slot;
   for (; slots_[slot].at >= 0; slot = (slot + 1) & mask_) {
-    if (slots_[slot].tag == tag) return slots_[slot].at;
+    if (slots_[slot].tag != tag) continue;
+    __builtin_prefetch(&sums_[static_cast<std::size_t>(slots_[slot].at)], 1);
+    __builtin_prefetch(&cells_[static_cast<std::size_t>(slots_[slot].at)]);
+    return slots_[slot].at;
   }
   if (used_ == config_.capacity) {
     ++refused_;
@@ -124,9 +131,7 @@ std::int32_t CellMap::find_or_add(const Place& place) {
   return at;
 }
 
-void CellMap::insert(const Place& place, const Eigen::Vector3d& point_m,
-                     const Eigen::Vector3f& reach_m) {
-  const std::int32_t at = find_or_add(place);
+void CellMap::add(std::int32_t at, const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
   if (at < 0) return;
   Sums& sums = sums_[static_cast<std::size_t>(at)];
   if (sums.count >= config_.memory) {
@@ -135,7 +140,8 @@ void CellMap::insert(const Place& place, const Eigen::Vector3d& point_m,
     sums.point *= kept;
     sums.square *= kept;
   }
-  const Eigen::Vector3f p = (point_m - center_of(place.index)).cast<float>();
+  const Index& i = cells_[static_cast<std::size_t>(at)].index;
+  const Eigen::Vector3f p = (point_m - center_of(i)).cast<float>();
   // Seen through a window of three cells, a longer reach is just "all of it".
   const float window_m = 3.0F * config_.cell_m;
   const float excess = std::max(1.0F, reach_m.squaredNorm() / (window_m * window_m));

@@ -48,20 +48,21 @@ class CellMap {
   /// surface. The surface between the two was not seen and counts as spread; without it a single
   /// ring on the ground looks like a plane through its own rays, blind to pitch ("cone lock").
   void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
-    insert(place_of(point_m), point_m, reach_m);
+    add(open(place_of(point_m)), point_m, reach_m);
   }
-  /// With the point's place_of(), asked some points ahead.
-  void insert(const Place& place, const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m);
 
   /// The distribution around a point. Fits are cached: a young cell is fitted again after every
   /// end_keyframe(), an older one after every sixth.
   Match find(const Eigen::Vector3d& point_m) { return match(cell_at(place_of(point_m)), point_m); }
 
-  /// find() in three steps. Each but the last asks the memory for what the next one reads; who
-  /// takes them for many points in turn does not wait for it.
+  /// find() and insert() in steps. Each but the last asks the memory for what the next one reads;
+  /// who takes them for many points in turn does not wait for it.
   [[nodiscard]] Place place_of(const Eigen::Vector3d& point_m) const;
   [[nodiscard]] std::int32_t cell_at(const Place& place) const;
   Match match(std::int32_t cell, const Eigen::Vector3d& point_m);
+  /// The cell there, made if missing.
+  std::int32_t open(const Place& place);
+  void add(std::int32_t cell, const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m);
 
   void end_keyframe() { ++keyframe_; }
 
@@ -106,7 +107,6 @@ class CellMap {
   [[nodiscard]] std::size_t slot_of(const Index& i) const;
   [[nodiscard]] static std::uint32_t tag_of(const Index& i);
   [[nodiscard]] std::int32_t find_cell(const Place& place) const;
-  std::int32_t find_or_add(const Place& place);
   [[nodiscard]] Sums sums_around(const Index& i) const;
   void fit(Cell& cell) const;
   void remove(std::size_t slot);

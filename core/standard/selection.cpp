@@ -15,9 +15,9 @@ Selection::Selection(int ground_goal, int structure_goal)
 
 std::uint64_t Selection::voxel_of(const Feature& f) const {
   const float per_m = 1.0F / voxel_m_[static_cast<std::size_t>(f.kind)];
-  constexpr float kOffset = 1 << 15;  // keeps the truncated index positive
+  constexpr float kOffset = 1 << 15;  // all are positive then, and to cut off is to round down
   const auto part = [&](float v_m) {
-    return static_cast<std::uint64_t>(std::floor(v_m * per_m) + kOffset) & 0xFFFFU;
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(v_m * per_m + kOffset)) & 0xFFFFU;
   };
   return 1U + (part(f.x_m) | part(f.y_m) << 16U | part(f.z_m) << 32U |
                static_cast<std::uint64_t>(f.kind) << 48U);

@@ -217,6 +217,7 @@ void Tracker::insert_held() {
   struct Waiting {
     Eigen::Vector3d point_m;
     CellMap::Place fine, coarse;
+    std::int32_t fine_cell, coarse_cell;
   };
   std::array<Waiting, 16> waiting;
   for (std::size_t first = 0; first < held_.features.size(); first += waiting.size()) {
@@ -230,11 +231,16 @@ void Tracker::insert_held() {
       one.coarse = maps_.coarse(f.kind).place_of(one.point_m);
     }
     for (std::size_t k = 0; k < n; ++k) {
+      const Kind kind = held_.features[first + k].kind;
+      waiting[k].fine_cell = maps_.fine(kind).open(waiting[k].fine);
+      waiting[k].coarse_cell = maps_.coarse(kind).open(waiting[k].coarse);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
       const Feature& f = held_.features[first + k];
       const Waiting& one = waiting[k];
       const Eigen::Vector3f reach = sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m});
-      maps_.fine(f.kind).insert(one.fine, one.point_m, reach);
-      maps_.coarse(f.kind).insert(one.coarse, one.point_m, reach);
+      maps_.fine(f.kind).add(one.fine_cell, one.point_m, reach);
+      maps_.coarse(f.kind).add(one.coarse_cell, one.point_m, reach);
     }
   }
   maps_.end_keyframe();
