@@ -1,5 +1,7 @@
 #include "core/standard/drift.hpp"
 
+#include <algorithm>
+
 namespace lilo::standard {
 
 void Drift::move(const Eigen::Vector3d& by_m) {
@@ -8,11 +10,13 @@ void Drift::move(const Eigen::Vector3d& by_m) {
   covariance_ = F * covariance_ * F.transpose();
 }
 
-void Drift::inherit(const Matrix6d& alignment) {
-  // A part of the map is made of several keyframes, and what one of them errs is known in part to
-  // those before. A rough figure: core/README.md says what comes of it.
-  constexpr double kShare = 0.006;
-  covariance_ += kShare * alignment;
+void Drift::inherit(const Matrix6d& alignment, int keyframes) {
+  // An error of one keyframe moves what is seen of the map by its part in it. That is about a
+  // dozen, fewer in a young map; the first, which is aligned with nothing, stands for four. Rough
+  // figures: core/README.md says what comes of them.
+  constexpr int kSeenAtOnce = 13;
+  const double part = 1.0 / std::min(keyframes + 3, kSeenAtOnce);
+  covariance_ += part * part * alignment;
 }
 
 Matrix6d in_sensor_axes(const Matrix6d& covariance, const Eigen::Quaterniond& R_odom_sensor) {

@@ -22,8 +22,8 @@ class Drift {
   /// The sensor has moved on: attitude errors made before turn into errors of position.
   void move(const Eigen::Vector3d& by_m);
 
-  /// A keyframe aligned with this covariance becomes part of the map.
-  void inherit(const Matrix6d& alignment);
+  /// A keyframe aligned with this covariance becomes part of a map of so many.
+  void inherit(const Matrix6d& alignment, int keyframes);
 
   [[nodiscard]] const Matrix6d& covariance() const { return covariance_; }
 

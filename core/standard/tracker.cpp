@@ -191,7 +191,7 @@ void Tracker::grow_map(const Timing& scan, const std::vector<Feature>& features,
   if (keyframes_ < kYoung) insert_held();
   ++keyframes_;
   T_odom_keyframe_ = T_odom_sensor_;
-  drift_.inherit(alignment_covariance());
+  drift_.inherit(alignment_covariance(), keyframes_);
 }
 
 /// Evenly, to what a keyframe may add to the map.
