@@ -2,7 +2,9 @@
 
 #include "core/paper/segmentation.hpp"
 
-#include <pcl/filters/voxel_grid.h>
+// With these we link no library of filters; see local_map.cpp.
+#include <pcl/filters/impl/filter.hpp>
+#include <pcl/filters/impl/voxel_grid.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,9 @@
 #include "core/paper/local_map.hpp"
 
-#include <pcl/filters/crop_box.h>
+// With these we link no library of filters, which brings five more and 10 MB of resident memory.
+#include <pcl/filters/impl/crop_box.hpp>
+#include <pcl/filters/impl/filter.hpp>
+#include <pcl/filters/impl/filter_indices.hpp>
 
 namespace lilo::paper {
 
