@@ -14,6 +14,14 @@ TEST(Pacer, KeepsTheCapturesDistances) {
   EXPECT_EQ(pacer.due_ns(250 * kMs), 5150 * kMs);
 }
 
+TEST(Pacer, WaitsForAMinuteButNotForAClockThatWasSet) {
+  Pacer pacer(1.0, 0);
+  (void)pacer.due_ns(0);
+  EXPECT_EQ(pacer.due_ns(60'000 * kMs), 60'000 * kMs);
+  EXPECT_EQ(pacer.due_ns(3'660'000 * kMs), 60'000 * kMs);
+  EXPECT_EQ(pacer.due_ns(3'660'005 * kMs), 60'005 * kMs);
+}
+
 TEST(Pacer, DividesThemByTheSpeed) {
   Pacer pacer(4.0, 0);
   (void)pacer.due_ns(0);

@@ -12,9 +12,11 @@ class Pacer {
   Pacer(double speed, std::int64_t start_ns) : speed_(speed), anchor_due_ns_(start_ns) {}
 
   /// Stamps that step back a little (two captures' threads) keep the schedule; those that step back
-  /// by more than a second (files put one behind the other, a loop) go on where the last one ended.
+  /// by more than a second (files put one behind the other, a loop) go on where the last one ended,
+  /// and so do those that step ahead by more than a minute: the recording computer's clock was set.
   std::int64_t due_ns(std::int64_t captured_ns) {
-    if (!anchored_ || captured_ns < last_captured_ns_ - kMaxStepBack_ns) {
+    const std::int64_t step_ns = captured_ns - last_captured_ns_;
+    if (!anchored_ || step_ns < -kMaxStepBack_ns || step_ns > kMaxPause_ns) {
       anchor_due_ns_ = anchored_ ? last_due_ns_ : anchor_due_ns_;
       anchor_captured_ns_ = captured_ns;
       anchored_ = true;
@@ -33,6 +35,7 @@ class Pacer {
 
  private:
   static constexpr std::int64_t kMaxStepBack_ns = 1'000'000'000;
+  static constexpr std::int64_t kMaxPause_ns = 60'000'000'000;
 
   double speed_;
   std::int64_t anchor_due_ns_;
