@@ -46,6 +46,10 @@ struct Estimate {
   std::array<WeakDirection, kMaxWeakDirections> weak_directions{};
   int weak_count = 0;
 
+  /// Times the map was given up, after a loss, for another begun where the prediction ended. Only
+  /// that prediction joins poses of different counts.
+  std::uint32_t restarts = 0;
+
   int edge_count = 0, surface_count = 0, ground_count = 0;  ///< features used
   int map_edge_count = 0, map_surface_count = 0;  ///< in the local map (default: before it)
   int correspondence_count = 0;                   ///< residuals of the last iteration

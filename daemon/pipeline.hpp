@@ -25,7 +25,7 @@ struct ScanSlot {
 
 struct PoseReport {
   Estimate estimate;
-  std::uint64_t seq = 0;            ///< poses of this odometry before this one
+  std::uint64_t seq = 0;            ///< poses of this session before this one
   std::int64_t last_packet_ns = 0;  ///< monotonic, as in ScanSlot
   std::int64_t processing_ns = 0;   ///< the worker's time for this pose, and before it for the map
   std::array<std::int64_t, kStageCount> stage_ns{};  ///< project: the receiver's; map: of the last

@@ -13,8 +13,8 @@ inline constexpr const char* kProtocolVersion = "1.0";
 
 const char* to_string(TrackingStatus status);
 
-/// Sixteen hexadecimal digits, new at every start: a gap in seq within one session is a loss, a new
-/// session is a restart.
+/// Sixteen hexadecimal digits: a gap in seq within one session is a loss, a new session has another
+/// origin.
 std::string new_session();
 
 /// What all pose datagrams of a session have in common.

@@ -52,7 +52,7 @@ void Publisher::send_poses() {
 }
 
 void Publisher::send_pose(const PoseReport& report) {
-  if (report.resets != resets_) begin_session(report.resets);
+  follow_session(report);
   PoseReport placed = report;
   if (mounted_) placed.estimate = in_base_frame(report.estimate, T_base_sensor_);
   Pose& pose = placed.estimate.T_odom_sensor;
@@ -75,12 +75,18 @@ bool Publisher::reset(const std::optional<Pose>& start_pose) {
   return true;
 }
 
-// A pose never jumps within a session: a new origin is a new session.
-void Publisher::begin_session(std::uint64_t resets) {
-  resets_ = resets;
+// A pose never jumps within a session: a new origin is a new session, and so is a map that was
+// begun where only the prediction knew to be.
+void Publisher::follow_session(const PoseReport& report) {
+  const bool reset = report.resets != resets_;
+  if (!reset && report.estimate.restarts == restarts_) return;
+  if (reset) {
+    T_odom_start_ = next_start_.value_or(Pose{});
+    next_start_.reset();
+  }
+  resets_ = report.resets;
+  restarts_ = report.estimate.restarts;
   message_.session = new_session();
-  T_odom_start_ = next_start_.value_or(Pose{});
-  next_start_.reset();
   record_.clear();
 }
 

@@ -43,7 +43,7 @@ class Publisher {
   void save(SaveKind kind, const SaveDone& done);
   void save_trajectory(const SaveDone& done);
   void save_map(MapCopy map);
-  void begin_session(std::uint64_t resets);
+  void follow_session(const PoseReport& report);
   bool reset(const std::optional<Pose>& start_pose);
   void broadcast(std::string_view datagram);
   std::string_view write_health_now();
@@ -54,9 +54,10 @@ class Publisher {
   HealthMonitor& monitor_;
   PoseMessageContext message_;
   Pose T_base_sensor_;
-  bool mounted_ = false;  // T_base_sensor is not the identity
-  std::uint64_t resets_ = 0;
-  Pose T_odom_start_;  // where the first pose of the session is
+  bool mounted_ = false;        // T_base_sensor is not the identity
+  std::uint64_t resets_ = 0;    // before the session,
+  std::uint32_t restarts_ = 0;  // and of its odometry
+  Pose T_odom_start_;           // where the first pose of the session is
   std::optional<Pose> next_start_;
   PoseRecord record_;
   SaveDone map_saved_;  // empty: no map was asked for

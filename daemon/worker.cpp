@@ -68,6 +68,7 @@ void Worker::copy_map(std::uint64_t asked) {
 void Worker::begin_again(std::uint64_t resets) {
   odometry_.emplace(config_);
   seq_ = 0;
+  restarts_ = 0;
   resets_ = resets;
   counters_.resets_done.store(resets, std::memory_order_release);
 }
@@ -83,7 +84,10 @@ void Worker::skip_to_newest() {
 
 void Worker::align(const ScanSlot& slot) {
   timer_.last_ns = monotonic_ns();
-  report(slot, odometry_->align(slot.scan, slot.features, timer_.hook()));
+  const Estimate estimate = odometry_->align(slot.scan, slot.features, timer_.hook());
+  if (estimate.restarts != restarts_) seq_ = 0;
+  restarts_ = estimate.restarts;
+  report(slot, estimate);
   ++seq_;
   add(counters_.scans_processed);
 }

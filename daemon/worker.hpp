@@ -49,6 +49,7 @@ class Worker {
   PipelineCounters& counters_;
   std::uint64_t seq_ = 0;
   std::uint64_t resets_ = 0;
+  std::uint32_t restarts_ = 0;  // of the odometry in force
   StageTimer timer_;
   MapCopy map_copy_;
 };

@@ -81,7 +81,10 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
 void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
   grow_map(timing_, features, solution_);
   ++scan_count_;
-  if (lost_scans_ == kScansToGiveUp) start_anew();
+  if (lost_scans_ == kScansToGiveUp) {
+    start_anew();
+    ++restarts_;
+  }
   hook(Stage::update_map);
 }
 
@@ -281,6 +284,7 @@ Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
   }
   e.covariance = translation_first(sensor_covariance());
   e.has_covariance = e.covariance.allFinite();
+  e.restarts = restarts_;
   e.residual_rms_sigma = std::sqrt(solution.mean_square);
   return e;
 }

@@ -110,6 +110,7 @@ class Tracker {
   Pose T_odom_start_;  // where the map in force was begun; all other poses here are from there
   Pose T_odom_sensor_;
   int lost_scans_ = 0;
+  std::uint32_t restarts_ = 0;
   int keyframes_ = 0;  // in the map in force
   Twist twist_;
   KnotInformation information_;  // of the pose and its rate at the last scan's end

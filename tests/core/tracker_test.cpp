@@ -160,6 +160,7 @@ TEST(DefaultProfile, BeginsAnotherMapWhereTheOldOneIsOfNoUse) {
   elsewhere.poles = {{25.0, 25.0, 6.0, 60.0}, {-22.0, 20.0, 4.0, 60.0}, {-30.0, -9.0, 5.0, 60.0}};
   Odometry odometry{OdometryConfig{}};
   std::vector<TrackingStatus> status;
+  std::vector<std::uint32_t> restarts;
   Pose before, settled, last;
   for (int k = 0; k < 60; ++k) {
     const Scan scan = test::scan_of(
@@ -171,12 +172,19 @@ TEST(DefaultProfile, BeginsAnotherMapWhereTheOldOneIsOfNoUse) {
         static_cast<std::uint64_t>(k));
     const Estimate e = odometry.process(scan);
     status.push_back(e.status);
+    restarts.push_back(e.restarts);
     if (k == 19) before = e.T_odom_sensor;
     if (k == 44) settled = e.T_odom_sensor;
     last = e.T_odom_sensor;
   }
   EXPECT_EQ(status[20], TrackingStatus::lost);
   EXPECT_EQ(status[44], TrackingStatus::tracking);
+  // What is not joined to the old map never passes for it.
+  for (std::size_t k = 20; k < status.size(); ++k) {
+    const bool tracking = status[k] == TrackingStatus::tracking;
+    EXPECT_TRUE(!tracking || restarts[k] == 1) << "scan " << k;
+  }
+  EXPECT_EQ(restarts[19], 0U);
   EXPECT_LT((settled.translation_m - before.translation_m).norm(), 0.3);
   EXPECT_NEAR((settled.inverse() * last).translation_m.x(), 0.3, 0.1);  // it follows again
 }

@@ -125,15 +125,17 @@ class Truth:
 
 def errors(poses, truth, offset):
     """Of every pose against its session's first: (m, deg)."""
-    out, first = [], truth.at(poses[0][0] + offset)
-    if first is None:
-        return None
-    for t, position, orientation, _ in poses:
+    out, session, first = [], None, None
+    for t, position, orientation, _, its_session in poses:
         at = truth.at(t + offset)
         if at is None:
+            if session is None:
+                return None
             out.append((0.0, 0.0))
             continue
-        move, turn = between(between(first, at), (position, orientation))
+        if its_session != session:
+            session, first = its_session, (at, (position, orientation))
+        move, turn = between(between(first[0], at), between(first[1], (position, orientation)))
         out.append((math.dist(move, (0, 0, 0)),
                     math.degrees(2 * math.atan2(math.dist(turn[:3], (0, 0, 0)), abs(turn[3])))))
     return out
@@ -152,14 +154,14 @@ def unpacked(message):
     pose = message["pose"]
     stamp, p, q = pose["stamp"], pose["position"], pose["orientation"]
     return (stamp["sec"] + 1e-9 * stamp["nsec"], (p["x"], p["y"], p["z"]),
-            (q["x"], q["y"], q["z"], q["w"]), pose["status"])
+            (q["x"], q["y"], q["z"], q["w"]), pose["status"], message["session"])
 
 
 def times_by_status(poses):
     """Seconds of each status, and the longest way back to `tracking`."""
     out = dict.fromkeys(("initializing", "tracking", "degraded", "lost"), 0.0)
     recovery, away_since = 0.0, None
-    for (t0, _, _, _), (t1, _, _, status) in zip(poses, poses[1:]):
+    for (t0, *_), (t1, _, _, status, _) in zip(poses, poses[1:]):
         out[status] += t1 - t0
         if status == "tracking":
             if away_since is not None:

@@ -19,10 +19,11 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// The next datagram that has `kind`, within ten seconds. All that come are held against the
-/// schema.
-inline std::optional<json> next_of_kind(UdpSocket& socket, const std::string& kind) {
-  const auto deadline = std::chrono::steady_clock::now() + seconds(10);
+/// The next datagram that has `kind`, within ten seconds or less. All that come are held against
+/// the schema.
+inline std::optional<json> next_of_kind(UdpSocket& socket, const std::string& kind,
+                                        milliseconds patience = seconds(10)) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
   while (std::chrono::steady_clock::now() < deadline) {
     const auto datagram = socket.receive(milliseconds(100));
     if (!datagram) continue;
@@ -52,6 +53,7 @@ class Sensor {
       std::this_thread::sleep_for(std::chrono::microseconds(400));
     }
   }
+  void be_in_a_room_of(unsigned radius_m) { source_.be_in_a_room_of(radius_m); }
 
  private:
   RoundRoomSource source_{1'000'000};

@@ -87,6 +87,37 @@ TEST(Protocol, ResetStartsANewSessionAtTheGivenPose) {
   EXPECT_NEAR(std::abs(after["pose"]["orientation"]["z"].get<double>()), 1.0, 1e-9);
 }
 
+// Carried into another room while nobody looked: where the new map lies to the old one only the
+// prediction says, so no pose that is aligned with it may pass for one of the old session.
+TEST(Protocol, AMapGivenUpIsTheEndOfTheSession) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  Sensor sensor;
+  sensor.turn(lilod, 10.0);
+  sensor.be_in_a_room_of(40);
+  sensor.turn(lilod, 25.0);
+  std::string last_session, session_of_loss;
+  std::uint64_t last_seq = 0, aligned_after = 0;
+  while (const auto pose = next_of_kind(lilod.sink(), "pose", milliseconds(500))) {
+    const std::string session = (*pose)["session"], status = (*pose)["pose"]["status"];
+    if (session != last_session) {
+      EXPECT_EQ((*pose)["seq"], 0);
+    } else {
+      EXPECT_EQ((*pose)["seq"], last_seq + 1);
+    }
+    if (status == "lost") session_of_loss = session;
+    const bool aligned = status == "tracking" || status == "degraded";  // round, it may turn
+    if (!session_of_loss.empty() && aligned) {
+      EXPECT_NE(session, session_of_loss);
+      ++aligned_after;
+    }
+    last_session = session;
+    last_seq = (*pose)["seq"];
+  }
+  EXPECT_FALSE(session_of_loss.empty());
+  EXPECT_GT(aligned_after, 0U);
+}
+
 TEST(Health, IsSentEverySecondAndSaysWhatIsInForce) {
   Lilod lilod("realtime:\n  worker_cpu: 0\n");
   ASSERT_TRUE(lilod.wait_ready());

@@ -27,6 +27,8 @@ class RoundRoomSource : public PacketSource {
     return ReadResult::packet;
   }
   [[nodiscard]] SourceCounts counts() const override { return {.packets = sent_}; }
+  /// From now on another room.
+  void be_in_a_room_of(unsigned radius_m) { radius_m_ = radius_m; }
 
   static constexpr double kPacketsPerTurn = 0.1e9 / (24 * 55296.0);
 
@@ -49,7 +51,7 @@ class RoundRoomSource : public PacketSource {
       put16(block * 100, 0xeeff);
       put16(block * 100 + 2, static_cast<unsigned>(azimuth));
       for (std::size_t channel = 0; channel < 32; ++channel) {
-        put16(block * 100 + 4 + channel * 3, 10'000 / 2);  // 10 m in steps of 2 mm
+        put16(block * 100 + 4 + channel * 3, radius_m_ * 1000 / 2);  // in steps of 2 mm
         bytes_[block * 100 + 6 + channel * 3] = std::byte{50};
       }
     }
@@ -63,6 +65,7 @@ class RoundRoomSource : public PacketSource {
 
   std::uint64_t packets_;
   std::uint64_t sent_ = 0;
+  unsigned radius_m_ = 10;
   std::array<std::byte, 1206> bytes_{};
 };
 
