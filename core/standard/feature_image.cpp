@@ -147,16 +147,21 @@ void FeatureImage::classify_column(int column, std::vector<Feature>& out) const 
     Step above;
     const auto k = static_cast<std::size_t>(ring);
     if (ring + 1 < rows && flats_m[k] > 0.0F && flats_m[k + 1] > 0.0F) {
-      above = step_between(pixels + ring, flats_m.data() + k,
-                           beams_.elevation_rad[k + 1] - beams_.elevation_rad[k]);
+      above = step_between(pixels + ring, flats_m.data() + k, gap_rad(ring));
     }
     if (flats_m[k] > 0.0F) add_feature(pixels, ring, below, above, out);
     below = above;
   }
 }
 
+float FeatureImage::gap_rad(int ring) const {
+  if (beams_.ring_count < 2) return 0.0F;
+  const auto lower = static_cast<std::size_t>(std::min(ring, beams_.ring_count - 2));
+  return beams_.elevation_rad[lower + 1] - beams_.elevation_rad[lower];
+}
+
 void FeatureImage::add_feature(const Pixel* column, int ring, Step below, Step above,
-                               std::vector<Feature>& out) {
+                               std::vector<Feature>& out) const {
   const Pixel& p = column[ring];
   const bool flat = (above.connected && !above.steep) || (below.connected && !below.steep);
   const bool steep = (above.connected && above.steep) || (below.connected && below.steep);
@@ -176,6 +181,14 @@ void FeatureImage::add_feature(const Pixel* column, int ring, Step below, Step a
     f.dx_m = neighbour.x_m - p.x_m;
     f.dy_m = neighbour.y_m - p.y_m;
     f.dz_m = neighbour.z_m - p.z_m;
+  } else {
+    // Across the ray. Without it what is thin and level, a bridge far ahead or a rail, holds the
+    // ring that sees it at the height at which it was seen first, and with it the pitch.
+    const float flat_m = std::max(1e-3F, std::sqrt(p.x_m * p.x_m + p.y_m * p.y_m));
+    const float up = gap_rad(ring);
+    f.dx_m = -up * p.z_m * p.x_m / flat_m;
+    f.dy_m = -up * p.z_m * p.y_m / flat_m;
+    f.dz_m = up * flat_m;
   }
   out.push_back(f);
 }

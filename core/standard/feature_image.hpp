@@ -17,9 +17,11 @@ enum class Kind : std::uint8_t {
 
 /// A return that a pixel of the image kept, and how far its surface reaches unseen.
 struct Feature {
-  float x_m, y_m, z_m;     ///< sensor frame at the instant of the firing
-  float s;                 ///< that instant as a part of the scan's duration, in [0, 1]
-  float dx_m, dy_m, dz_m;  ///< to the return of the neighbouring ring on the same surface, or zero
+  float x_m, y_m, z_m;  ///< sensor frame at the instant of the firing
+  float s;              ///< that instant as a part of the scan's duration, in [0, 1]
+  /// To the return of the neighbouring ring on the same surface. Where there is none, as far up as
+  /// the next ring looks: how high a bar is that one ring hits, nobody knows.
+  float dx_m, dy_m, dz_m;
   Kind kind;
   std::uint8_t ring;
 };
@@ -71,9 +73,11 @@ class FeatureImage {
   [[nodiscard]] int place_of(int column) const;
   void classify_until(int place);
   void classify_column(int column, std::vector<Feature>& out) const;
+  /// Between a ring and the next, which of the highest is the one below.
+  [[nodiscard]] float gap_rad(int ring) const;
   [[nodiscard]] Flats flats_of(int column) const;
-  static void add_feature(const Pixel* column, int ring, Step below, Step above,
-                          std::vector<Feature>& out);
+  void add_feature(const Pixel* column, int ring, Step below, Step above,
+                   std::vector<Feature>& out) const;
   /// From the pixel of a ring to that of the next, both filled.
   static Step step_between(const Pixel* lower, const float* flats_m, float gap_rad);
 
