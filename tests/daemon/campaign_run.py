@@ -3,6 +3,7 @@
 import bisect
 import json
 import math
+import os
 import pathlib
 import socket
 import subprocess
@@ -35,9 +36,11 @@ class Lilod:
             f"publish: {{sinks: ['127.0.0.1:{self.sink.getsockname()[1]}']}}\n"
             f"subscribe: {{port: {self.query_port}}}\n")
         self.log = folder / "log"
+        # What AddressSanitizer keeps of freed memory would look like growth.
+        environment = {**os.environ, "ASAN_OPTIONS": "quarantine_size_mb=1:thread_local_quarantine_size_kb=64"}
         with open(self.log, "w") as log:
             self.process = subprocess.Popen([root / "build" / preset / "bin/lilod", "--config", path],
-                                            stderr=log)
+                                            stderr=log, env=environment)
         self.poses, self.health, self.done = [], None, False
         self.thread = threading.Thread(target=self.listen)
         self.thread.start()
