@@ -23,7 +23,8 @@ class Tracker {
 
  private:
   static constexpr std::size_t kScansToDecide = 6;
-  static constexpr int kYoung = 5;  // keyframes of a map that may know too little
+  static constexpr int kYoung = 5;   // keyframes of a map that may know too little
+  static constexpr int kGrown = 15;  // keyframes of a map that must know where it is
   struct Timing {
     std::int64_t start_ns = 0, end_ns = 0;
     bool motion_compensated = false;

@@ -17,9 +17,9 @@ struct Recording {
 };
 
 /// A folder that `lilo sim` made.
-inline Recording read_recording(const std::string& folder) {
+inline Recording read_recording(const std::string& folder, const SensorConfig& sensor = {}) {
   Recording recording;
-  const auto source = open_scans(folder + "/data.pcap", SensorConfig{});
+  const auto source = open_scans(folder + "/data.pcap", sensor);
   Scan scan;
   while (source->next(scan)) recording.scans.push_back(scan);
   for (const StampedPose& truth : read_trajectory(folder + "/gt_end.tum").poses) {
@@ -31,7 +31,12 @@ inline Recording read_recording(const std::string& folder) {
 inline Recording simulated(const sim::SimOptions& options) {
   const TemporaryFolder folder;
   sim::simulate(options, folder.path(), [](double) {});
-  return read_recording(folder.path());
+  SensorConfig sensor;
+  if (options.sensor.sensor != sim::Sensor::vlp16) {
+    sensor.model = SensorModel::hdl64e;
+    sensor.calibration_file = folder.path() + "/calibration.yaml";
+  }
+  return read_recording(folder.path(), sensor);
 }
 
 }  // namespace lilo::test

@@ -24,6 +24,7 @@ struct Drive {
   const char* world = nullptr;  ///< simulated here; without, a folder of the data is read
   double speed_mps = 0.0;
   std::size_t every = 20;  ///< scans from start to start
+  sim::Sensor sensor = sim::Sensor::vlp16;
 };
 std::ostream& operator<<(std::ostream& out, const Drive& drive) { return out << drive.name; }
 
@@ -34,6 +35,7 @@ class Starts : public testing::TestWithParam<Drive> {
     if (drive.world == nullptr) return test::read_recording(test::data_path(drive.name));
     sim::SimOptions options;
     options.world = drive.world;
+    options.sensor.sensor = drive.sensor;
     options.seed = 3;
     options.motion.speed_mps = drive.speed_mps;
     options.motion.start_in_motion = true;
@@ -106,14 +108,15 @@ TEST_P(Starts, AreTrueToWhatTheySay) {
   EXPECT_GT(sum / starts, 6.0 / 4.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Simulated, Starts,
-                         testing::Values(Drive{"sim_vlp16_park"}, Drive{"sim_vlp16_town"},
-                                         Drive{"corridor", "corridor", 1.0, 10},
-                                         Drive{"field", "field", 5.0, 10},
-                                         Drive{"highway_10_mps", "highway", 10.0, 10},
-                                         Drive{"highway_25_mps", "highway", 25.0, 10},
-                                         Drive{"country", "country", 14.0, 10}),
-                         [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Simulated, Starts,
+    testing::Values(Drive{"sim_vlp16_park"}, Drive{"sim_vlp16_town"},
+                    Drive{"corridor", "corridor", 1.0, 10}, Drive{"field", "field", 5.0, 10},
+                    Drive{"highway_10_mps", "highway", 10.0, 10},
+                    Drive{"highway_25_mps", "highway", 25.0, 10},
+                    Drive{"country", "country", 14.0, 10},
+                    Drive{"hdl64_park", "park", 1.5, 20, sim::Sensor::hdl64_s2}),
+    [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace lilo
