@@ -52,8 +52,8 @@ inline float ccw_rad_from_ticks(double ticks) {
 /// Into [-pi, pi), from less than a turn outside.
 inline float wrap_rad(float rad) {
   constexpr float kPi = std::numbers::pi_v<float>;
-  if (rad < -kPi) return rad + 2.0F * kPi;
-  return rad >= kPi ? rad - 2.0F * kPi : rad;
+  const float more = rad + 2.0F * kPi, less = rad - 2.0F * kPi;  // before asking: no branch
+  return rad < -kPi ? more : (rad >= kPi ? less : rad);
 }
 
 /// Cosine, sine and counter-clockwise angle of each of the 36000 azimuths a packet can name.

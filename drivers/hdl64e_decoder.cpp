@@ -61,23 +61,23 @@ void Hdl64eDecoder::use_calibration(const Hdl64eCalibration& calibration) {
       return c.two_point ? f(near_m - c.dist_m) / (kFarM - near_at_m) : 0.0F;
     };
     beams_.elevation_rad[ring] = f(c.vert_rad);
-    lasers_[i] = {.cos_w = f(std::cos(c.vert_rad)),
-                  .sin_w = f(std::sin(c.vert_rad)),
-                  .cos_b = f(std::cos(c.rot_rad)),
-                  .sin_b = f(std::sin(c.rot_rad)),
-                  .b_rad = f(c.rot_rad),
-                  .dist_m = f(c.dist_m),
-                  .near_x = near(c.dist_x_m, kNearXM),
-                  .near_y = near(c.dist_y_m, kNearYM),
-                  .horizontal_m = f(c.horiz_offset_m),
-                  .vertical_m = f(c.vert_offset_m),
-                  .focal = square(1.0F - f(c.focal_distance_m) / kFocalRangeM),
-                  .slope = 256.0F * f(c.focal_slope),
-                  .min_intensity = f(std::clamp(c.min_intensity, 0, 255)),
-                  .max_intensity = f(std::clamp(c.max_intensity, 0, 255)),
-                  .min_steps = std::max(1, steps(min_range_m_)),
-                  .max_steps = steps(max_range_m_),
-                  .ring = static_cast<std::uint8_t>(ring)};
+    lasers_.cos_w[i] = f(std::cos(c.vert_rad));
+    lasers_.sin_w[i] = f(std::sin(c.vert_rad));
+    lasers_.cos_b[i] = f(std::cos(c.rot_rad));
+    lasers_.sin_b[i] = f(std::sin(c.rot_rad));
+    lasers_.b_rad[i] = f(c.rot_rad);
+    lasers_.dist_m[i] = f(c.dist_m);
+    lasers_.near_x[i] = near(c.dist_x_m, kNearXM);
+    lasers_.near_y[i] = near(c.dist_y_m, kNearYM);
+    lasers_.horizontal_m[i] = f(c.horiz_offset_m);
+    lasers_.vertical_m[i] = f(c.vert_offset_m);
+    lasers_.focal[i] = square(1.0F - f(c.focal_distance_m) / kFocalRangeM);
+    lasers_.slope[i] = 256.0F * f(c.focal_slope);
+    lasers_.min_intensity[i] = f(std::clamp(c.min_intensity, 0, 255));
+    lasers_.max_intensity[i] = f(std::clamp(c.max_intensity, 0, 255));
+    lasers_.min_steps[i] = std::max(1, steps(min_range_m_));
+    lasers_.max_steps[i] = steps(max_range_m_);
+    lasers_.ring[i] = static_cast<std::uint8_t>(ring);
   }
 }
 
@@ -124,37 +124,56 @@ double Hdl64eDecoder::packet_period_ns() const {
   return table_ == nullptr ? 0.0 : static_cast<double>(table_->shot_ns) * shots_per_packet(dual_);
 }
 
-void Hdl64eDecoder::project(const std::byte* block, std::size_t first_laser, std::int32_t t_ns,
-                            ReturnKind kind, Bank& bank) const {
-  const AzimuthTable::Entry& head = azimuths_[wire::u16(block + 2)];
-  const std::byte* channel = block + wire::kBlockHeaderBytes;
+Hdl64eDecoder::Bank Hdl64eDecoder::project(int block) const {
+  const std::byte* bytes = wire::block(packet_, block);
+  Bank bank;
+  bank.first_laser = block % 2 == 0 ? 0 : kBank;
+  std::array<float, kBank> echo;
+  const std::byte* channel = bytes + wire::kBlockHeaderBytes;
   for (std::size_t k = 0; k < kBank; ++k, channel += wire::kChannelBytes) {
-    const Laser& laser = lasers_[first_laser + k];
-    const float cos_a = head.cos * laser.cos_b + head.sin * laser.sin_b;
-    const float sin_a = head.sin * laser.cos_b - head.cos * laser.sin_b;
-    const int steps = wire::u16(channel);
-    const float raw = static_cast<float>(steps) * step_m_;
-    const float d = raw + laser.dist_m;
-    const float side = d * laser.cos_w * sin_a - laser.horizontal_m * cos_a;   // the manual's x
-    const float ahead = d * laser.cos_w * cos_a + laser.horizontal_m * sin_a;  // and y
-    const float more_x = laser.near_x * (kFarM - std::min(std::abs(side), kFarM));
-    const float more_y = laser.near_y * (kFarM - std::min(std::abs(ahead), kFarM));
-    const float focus = laser.slope * std::abs(laser.focal - square(1.0F - raw / kFocalRangeM));
-    const float intensity = std::clamp(static_cast<float>(wire::u8(channel + 2)) + focus,
-                                       laser.min_intensity, laser.max_intensity);
-    const float ccw = head.ccw_rad + laser.b_rad;
-    bank.returns[k] = {.x_m = ahead + more_y * laser.cos_w * cos_a,
-                       .y_m = -(side + more_x * laser.cos_w * sin_a),
-                       .z_m = (d + 0.5F * (more_x + more_y)) * laser.sin_w + laser.vertical_m,
-                       .azimuth_rad = wrap_rad(ccw),
-                       .t_ns = t_ns + static_cast<std::int32_t>(k / 4) * table_->group_ns +
-                               table_->laser_ns[k % 4],
-                       .ring = laser.ring,
-                       .intensity = static_cast<std::uint8_t>(intensity),
-                       .kind = kind};
-    bank.steps[k] = static_cast<std::uint16_t>(steps);
-    bank.in_range[k] = steps >= laser.min_steps && steps <= laser.max_steps;
+    bank.steps[k] = wire::u16(channel);
+    echo[k] = static_cast<float>(wire::u8(channel + 2));
   }
+  const AzimuthTable::Entry head = azimuths_[wire::u16(bytes + 2)];
+  const float step_m = step_m_;
+  // No branches here, and nothing the compiler may not compute for four lasers at once.
+  for (std::size_t k = 0; k < kBank; ++k) {
+    const std::size_t i = bank.first_laser + k;
+    const float cos_a = head.cos * lasers_.cos_b[i] + head.sin * lasers_.sin_b[i];
+    const float sin_a = head.sin * lasers_.cos_b[i] - head.cos * lasers_.sin_b[i];
+    const float raw = static_cast<float>(bank.steps[k]) * step_m;
+    const float d = raw + lasers_.dist_m[i];
+    const float flat_x = lasers_.cos_w[i] * sin_a, flat_y = lasers_.cos_w[i] * cos_a;
+    const float side = d * flat_x - lasers_.horizontal_m[i] * cos_a;   // the manual's x
+    const float ahead = d * flat_y + lasers_.horizontal_m[i] * sin_a;  // and y
+    const float more_x = lasers_.near_x[i] * (kFarM - std::min(std::abs(side), kFarM));
+    const float more_y = lasers_.near_y[i] * (kFarM - std::min(std::abs(ahead), kFarM));
+    const float focus =
+        lasers_.slope[i] * std::abs(lasers_.focal[i] - square(1.0F - raw / kFocalRangeM));
+    const float intensity =
+        std::min(std::max(echo[k] + focus, lasers_.min_intensity[i]), lasers_.max_intensity[i]);
+    bank.x_m[k] = ahead + more_y * flat_y;
+    bank.y_m[k] = -(side + more_x * flat_x);
+    bank.z_m[k] = (d + 0.5F * (more_x + more_y)) * lasers_.sin_w[i] + lasers_.vertical_m[i];
+    bank.azimuth_rad[k] = wrap_rad(head.ccw_rad + lasers_.b_rad[i]);
+    bank.intensity[k] = static_cast<std::int32_t>(intensity);
+    bank.in_range[k] = static_cast<std::int32_t>(bank.steps[k] >= lasers_.min_steps[i]) &
+                       static_cast<std::int32_t>(bank.steps[k] <= lasers_.max_steps[i]);
+  }
+  return bank;
+}
+
+Return Hdl64eDecoder::at(const Bank& bank, std::size_t k, std::int32_t t_ns,
+                         ReturnKind kind) const {
+  return {
+      .x_m = bank.x_m[k],
+      .y_m = bank.y_m[k],
+      .z_m = bank.z_m[k],
+      .azimuth_rad = bank.azimuth_rad[k],
+      .t_ns = t_ns + static_cast<std::int32_t>(k / 4) * table_->group_ns + table_->laser_ns[k % 4],
+      .ring = lasers_.ring[bank.first_laser + k],
+      .intensity = static_cast<std::uint8_t>(bank.intensity[k]),
+      .kind = kind};
 }
 
 void Hdl64eDecoder::append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const {
@@ -167,16 +186,14 @@ void Hdl64eDecoder::append(std::size_t column, std::int32_t t_ns, std::vector<Re
 
 // Upper and lower laser of one number fire together, so they alternate in the scan.
 void Hdl64eDecoder::append_single(int pair, std::int32_t t_ns, std::vector<Return>& out) const {
-  Bank upper, lower;
-  project(wire::block(packet_, 2 * pair), 0, t_ns, ReturnKind::strongest, upper);
-  project(wire::block(packet_, 2 * pair + 1), kBank, t_ns, ReturnKind::strongest, lower);
+  const Bank upper = project(2 * pair), lower = project(2 * pair + 1);
   std::array<Return, 2 * kBank> kept;
   std::size_t count = 0;
   for (std::size_t k = 0; k < kBank; ++k) {
-    kept[count] = upper.returns[k];
-    count += upper.in_range[k] ? 1U : 0U;
-    kept[count] = lower.returns[k];
-    count += lower.in_range[k] ? 1U : 0U;
+    for (const Bank* bank : {&upper, &lower}) {
+      kept[count] = at(*bank, k, t_ns, ReturnKind::strongest);
+      count += static_cast<std::size_t>(bank->in_range[k]);
+    }
   }
   out.insert(out.end(), kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count));
 }
@@ -184,24 +201,19 @@ void Hdl64eDecoder::append_single(int pair, std::int32_t t_ns, std::vector<Retur
 // No manual page says which pair is the strongest and which the last; the order here is that of
 // velodyne_decoder. Equal ones are one echo.
 void Hdl64eDecoder::append_dual(int shot, std::int32_t t_ns, std::vector<Return>& out) const {
-  std::array<Bank, 2> first, second;
-  for (std::size_t bank = 0; bank < 2; ++bank) {
-    const int block = 4 * shot + static_cast<int>(bank);
-    project(wire::block(packet_, block), bank * kBank, t_ns, ReturnKind::strongest, first[bank]);
-    project(wire::block(packet_, block + 2), bank * kBank, t_ns, ReturnKind::last, second[bank]);
-  }
+  const std::array<Bank, 2> first{project(4 * shot), project(4 * shot + 1)};
+  const std::array<Bank, 2> second{project(4 * shot + 2), project(4 * shot + 3)};
   std::array<Return, 4 * kBank> kept;
   std::size_t count = 0;
   for (std::size_t k = 0; k < kBank; ++k) {
     for (std::size_t bank = 0; bank < 2; ++bank) {
       const bool same = first[bank].steps[k] == second[bank].steps[k];
-      kept[count] = first[bank].returns[k];
-      if (same) kept[count].kind = ReturnKind::both;
       const bool want_first = same || choice_ != ReturnChoice::last;
-      count += want_first && first[bank].in_range[k] ? 1U : 0U;
-      kept[count] = second[bank].returns[k];
       const bool want_second = !same && choice_ != ReturnChoice::strongest;
-      count += want_second && second[bank].in_range[k] ? 1U : 0U;
+      kept[count] = at(first[bank], k, t_ns, same ? ReturnKind::both : ReturnKind::strongest);
+      count += want_first && first[bank].in_range[k] != 0 ? 1U : 0U;
+      kept[count] = at(second[bank], k, t_ns, ReturnKind::last);
+      count += want_second && second[bank].in_range[k] != 0 ? 1U : 0U;
     }
   }
   out.insert(out.end(), kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count));

@@ -59,22 +59,27 @@ class Hdl64eDecoder final : public PacketDecoder {
  private:
   static constexpr std::size_t kBank = wire::kChannelsPerBlock;
 
-  struct Laser {  // what a return needs of its laser's correction
-    float cos_w, sin_w, cos_b, sin_b, b_rad;
-    float dist_m, near_x, near_y, horizontal_m, vertical_m;
-    float focal, slope, min_intensity, max_intensity;
-    int min_steps, max_steps;
-    std::uint8_t ring;
+  /// What returns need of their lasers' corrections: an array each, so that the compiler takes
+  /// several lasers at a time.
+  struct Lasers {
+    using Floats = std::array<float, Hdl64eCalibration::kLasers>;
+    using Ints = std::array<std::int32_t, Hdl64eCalibration::kLasers>;
+    Floats cos_w, sin_w, cos_b, sin_b, b_rad;
+    Floats dist_m, near_x, near_y, horizontal_m, vertical_m;
+    Floats focal, slope, min_intensity, max_intensity;
+    Ints min_steps, max_steps;
+    std::array<std::uint8_t, Hdl64eCalibration::kLasers> ring;
   };
   struct Bank {  // one block's 32 lasers
-    std::array<Return, kBank> returns;
-    std::array<std::uint16_t, kBank> steps;
-    std::array<bool, kBank> in_range;
+    std::size_t first_laser;
+    std::array<std::int32_t, kBank> steps, intensity, in_range;
+    std::array<float, kBank> x_m, y_m, z_m, azimuth_rad;
   };
 
   [[nodiscard]] bool find_dual(const std::byte* packet) const;
-  void project(const std::byte* block, std::size_t first_laser, std::int32_t t_ns, ReturnKind kind,
-               Bank& bank) const;
+  [[nodiscard]] Bank project(int block) const;
+  [[nodiscard]] Return at(const Bank& bank, std::size_t k, std::int32_t t_ns,
+                          ReturnKind kind) const;
   void append_single(int pair, std::int32_t t_ns, std::vector<Return>& out) const;
   void append_dual(int shot, std::int32_t t_ns, std::vector<Return>& out) const;
 
@@ -82,7 +87,7 @@ class Hdl64eDecoder final : public PacketDecoder {
   double min_range_m_, max_range_m_;
   ReturnChoice choice_;
   float step_m_ = wire::kMetresPerStep;
-  std::array<Laser, Hdl64eCalibration::kLasers> lasers_{};
+  Lasers lasers_{};
   BeamTable beams_;
   const FiringTable* table_ = nullptr;
 
