@@ -2,6 +2,8 @@
 
 #include "core/standard/weak_directions.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -48,6 +50,7 @@ Tracker::Tracker(const OdometryConfig& config)
       selection_(config.standard.ground_features, config.standard.structure_features),
       maps_(make_maps(config.standard)),
       solver_(solver_config(config.standard)),
+      motion_check_(selection_.most()),
       information_(first_information()) {
   const StandardConfig& c = config.standard;
   const auto for_map = static_cast<std::size_t>(c.map_features);
@@ -73,6 +76,10 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
   }
   const bool in_vain = status_ == TrackingStatus::lost && chosen.size() >= kMinFeatures;
   lost_scans_ = in_vain ? lost_scans_ + 1 : 0;
+  if (is_refuted(chosen)) {
+    status_ = TrackingStatus::lost;
+    lost_scans_ = kScansToGiveUp;
+  }
   const Estimate result = estimate(scan, solution_, chosen);
   hook(Stage::align);
   return result;
@@ -81,7 +88,7 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
 void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
   grow_map(timing_, features, solution_);
   ++scan_count_;
-  if (lost_scans_ == kScansToGiveUp) {
+  if (lost_scans_ >= kScansToGiveUp) {
     start_anew();
     ++restarts_;
   }
@@ -162,6 +169,19 @@ void Tracker::accept(const Timing& scan, const Prior& prior, const Solution& sol
     information_ = solution.end_information;
   }
   drift_.move(T_odom_sensor_.translation_m - from_m);
+}
+
+/// Whether the map led us astray: where it is known, another motion explains the scans better.
+bool Tracker::is_refuted(const std::vector<Feature>& chosen) {
+  if (seen_count_ > 0 || scan_count_ == 0 || status_ == TrackingStatus::lost) {
+    motion_check_.clear();
+    return false;
+  }
+  const Pose begin = timing_.motion_compensated ? T_odom_sensor_ : solution_.trajectory.at(0.0);
+  motion_check_.see(chosen, begin, T_odom_sensor_, span_of(timing_), timing_.end_ns);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> by_information(
+      solution_.data_information.block<2, 2>(3, 3));
+  return motion_check_.is_refuted(by_information.eigenvectors().col(0));
 }
 
 bool Tracker::is_young(const Solution& solution) const {

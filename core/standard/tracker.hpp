@@ -3,6 +3,7 @@
 #include "core/odometry.hpp"
 #include "core/standard/drift.hpp"
 #include "core/standard/footprint.hpp"
+#include "core/standard/motion_check.hpp"
 #include "core/standard/selection.hpp"
 #include "core/standard/solver.hpp"
 
@@ -92,6 +93,7 @@ class Tracker {
   static void note_track(Seen& seen, const Pose& T_begin, const Pose& T_end);
   void note_prediction(Seen& seen) const;
   void remember(const std::vector<Feature>& all, const std::vector<Feature>& chosen);
+  bool is_refuted(const std::vector<Feature>& chosen);
   [[nodiscard]] TrackingStatus status_of(const Scan& scan, const Solution& solution,
                                          std::size_t feature_count) const;
   [[nodiscard]] Estimate estimate(const Scan& scan, const Solution& solution,
@@ -107,6 +109,7 @@ class Tracker {
   Held held_;
   Drift drift_;
   Footprint footprint_;
+  MotionCheck motion_check_;
 
   Pose T_odom_start_;  // where the map in force was begun; all other poses here are from there
   Pose T_odom_sensor_;

@@ -125,7 +125,8 @@ Solution Tracker::start() {
   Start start = most_compact();
   Solution solution = refine(start);
   start_is_clear_ = start.is_clear;
-  if (start.is_clear && !start.moves) seen_count_ = 0;
+  // Who was switched on mostly stands; where a map was given up, more scans must tell.
+  if (start.is_clear && !start.moves && restarts_ == 0) seen_count_ = 0;
   return solution;
 }
 

@@ -1,0 +1,92 @@
+#include "core/standard/motion_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace lilo::standard {
+namespace {
+
+constexpr double kSpan_s = 0.1;
+constexpr double kSpeed_mps = 2.0;
+
+/// A road along a barrier that looks the same everywhere, with a truck ahead that keeps its
+/// distance and, where asked for, posts.
+class Road {
+ public:
+  explicit Road(bool has_posts) {
+    for (int k = 0; k < (has_posts ? 150 : 0); ++k)
+      posts_m_.emplace_back(random(-80.0, 100.0), k % 2 == 0 ? -9.0 : 12.0);
+  }
+
+  /// What the sensor sees, which is at x = speed * time.
+  std::vector<Feature> scan(double end_s) {
+    std::vector<Feature> features;
+    const auto add = [&](const Eigen::Vector2d& p_m, bool moves) {
+      const double s = random(0.0, 1.0);
+      const double x_m = kSpeed_mps * (end_s - (1.0 - s) * kSpan_s);
+      Feature f{};
+      f.x_m = static_cast<float>(moves ? p_m.x() : p_m.x() - x_m);
+      f.y_m = static_cast<float>(p_m.y());
+      f.s = static_cast<float>(s);
+      f.kind = Kind::structure;
+      features.push_back(f);
+    };
+    for (const Eigen::Vector2d& post : posts_m_)
+      for (int k = 0; k < 3; ++k) add(post + Eigen::Vector2d(random(-0.1, 0.1), 0.0), false);
+    for (int k = 0; k < 100; ++k) add({20.0, random(-1.2, 1.2)}, true);
+    for (int k = 0; k < 300; ++k) add({kSpeed_mps * end_s + random(-40.0, 40.0), 5.0}, false);
+    return features;
+  }
+
+ private:
+  double random(double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random_);
+  }
+  std::minstd_rand random_{7};
+  std::vector<Eigen::Vector2d> posts_m_;
+};
+
+/// Scans until the track, which goes at `tracked_mps`, is refuted; 100: never.
+int scans_until_refuted(bool has_posts, double tracked_mps, const Eigen::Vector2d& axis) {
+  Road road(has_posts);
+  MotionCheck check(2000);
+  for (int k = 1; k < 100; ++k) {
+    const double end_s = kSpan_s * k;
+    Pose begin, end;
+    begin.translation_m.x() = tracked_mps * (end_s - kSpan_s);
+    end.translation_m.x() = tracked_mps * end_s;
+    check.see(road.scan(end_s), begin, end, kSpan_s, std::llround(1e9 * end_s));
+    if (check.is_refuted(axis)) return k;
+  }
+  return 100;
+}
+
+TEST(MotionCheck, ATrueMotionIsNotRefuted) {
+  EXPECT_EQ(scans_until_refuted(true, kSpeed_mps, {1.0, 0.0}), 100);
+  EXPECT_EQ(scans_until_refuted(true, kSpeed_mps, {0.6, 0.8}), 100);
+}
+
+TEST(MotionCheck, FollowingTheTruckIsRefutedWithinASecond) {
+  EXPECT_LE(scans_until_refuted(true, 0.0, {1.0, 0.0}), 10);
+  EXPECT_LE(scans_until_refuted(true, 0.0, {0.0, 1.0}), 10) << "the axis may be either";
+}
+
+TEST(MotionCheck, WhereNothingTellsNothingIsRefuted) {
+  EXPECT_EQ(scans_until_refuted(false, 0.0, {1.0, 0.0}), 100);
+}
+
+TEST(MotionCheck, AfterAClearItBeginsAgain) {
+  Road road(true);
+  MotionCheck check(2000);
+  for (int k = 1; k < 50; ++k) {
+    if (k % 5 == 0) check.clear();
+    check.see(road.scan(kSpan_s * k), {}, {}, kSpan_s, std::llround(1e9 * kSpan_s * k));
+    EXPECT_FALSE(check.is_refuted({1.0, 0.0})) << "five scans are too few";
+  }
+}
+
+}  // namespace
+}  // namespace lilo::standard
