@@ -157,7 +157,7 @@ FeatureImage::Steps FeatureImage::steps_of(const Pixel* pixels, const Filled& fi
     const std::int32_t connected = dd * dd + dz * dz < reach_m * reach_m ? step : 0;
     steps[k] = (is_filled[k] & is_filled[k + 1]) != 0 ? connected : 0;
   }
-  steps[rows - 1] = 0;
+  if (rows > 0) steps[rows - 1] = 0;
   return steps;
 }
 
