@@ -9,22 +9,37 @@
 /// How well some scans fall on each other under a motion that is only supposed.
 namespace lilo::standard {
 
+/// What stands in a scan, each in the sensor's frame at its firing. An array per coordinate, so
+/// that several are moved at a time.
+struct Outline {
+  std::vector<float> x_m, y_m, z_m;
+  std::vector<float> s;  ///< as Feature::s
+
+  void reserve(std::size_t size);
+  /// Ground counts for nothing, it looks the same at every speed.
+  void assign(const std::vector<Feature>& features);
+};
+
 /// The area that what stands takes up on the ground, seen from above, when scans are laid over each
 /// other as a motion says: trunks and walls coincide under the true one and smear under any other.
-/// Ground counts for nothing, it looks the same at every speed. Needs neither a map nor a first
-/// guess, and hardly cares how many rings hit a thing.
+/// Needs neither a map nor a first guess, and hardly cares how many rings hit a thing.
+///
+/// Not thread-safe; no allocation after construction.
 class Footprint {
  public:
-  Footprint();
+  /// `most`: of one outline.
+  explicit Footprint(std::size_t most);
 
-  /// Square cells taken up by the structure of all scans added since clear().
+  /// Square cells taken up by all scans added since clear().
   [[nodiscard]] int cells() const { return cells_; }
   void clear();
 
-  /// Adds the structure of one scan that lasted from `T_begin` to `T_end`, at constant velocity.
-  void add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end);
+  /// Adds one scan that lasted from `T_begin` to `T_end`, at constant velocity. What lies 128 m
+  /// from the origin along an axis is left out.
+  void add(const Outline& scan, const Pose& T_begin, const Pose& T_end);
 
  private:
+  std::vector<std::uint32_t> at_;
   std::vector<std::uint64_t> taken_;
   int cells_ = 0;
 };

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/pose.hpp"
-#include "core/standard/feature_image.hpp"
+#include "core/standard/footprint.hpp"
 
 #include <array>
 #include <cstdint>
@@ -33,24 +33,21 @@ class MotionCheck {
 
  private:
   static constexpr std::size_t kScans = 6;
-  /// A scan's structure as it was tracked. An array each, so that several are moved at a time.
   struct Seen {
-    std::vector<float> x_cells, y_cells;  // odometry frame
-    std::vector<float> before_s;          // the end of the scan
+    Outline outline;
+    Pose T_begin, T_end;
+    double span_s = 0.0;
     std::int64_t end_ns = 0;
     int cells = 0;  // by itself
   };
-  void clear_grid();
-  void add(const Seen& seen, const Eigen::Vector2f& more_mps);
-  int cells_under(const Eigen::Vector2f& more_mps);
+  void add(const Seen& one, const Eigen::Vector2d& more_mps);
+  int cells_under(const Eigen::Vector2d& more_mps);
 
   std::array<Seen, kScans> seen_;
   std::size_t count_ = 0, newest_ = 0;
   int refuted_ = 0;  // times on end
   int speed_ = 0;    // which one is tried
-  std::vector<std::uint32_t> at_;
-  std::vector<std::uint64_t> taken_;
-  int cells_ = 0;
+  Footprint footprint_;
 };
 
 }  // namespace lilo::standard

@@ -50,6 +50,7 @@ Tracker::Tracker(const OdometryConfig& config)
       selection_(config.standard.ground_features, config.standard.structure_features),
       maps_(make_maps(config.standard)),
       solver_(solver_config(config.standard)),
+      footprint_(selection_.most()),
       motion_check_(selection_.most()),
       information_(first_information()) {
   const StandardConfig& c = config.standard;
@@ -59,6 +60,7 @@ Tracker::Tracker(const OdometryConfig& config)
   for (Seen& seen : seen_) {
     seen.for_map.reserve(for_map);
     seen.chosen.reserve(selection_.most());
+    seen.outline.reserve(selection_.most());
   }
 }
 

@@ -36,6 +36,7 @@ class Tracker {
     Pose T_begin, T_end;  ///< as tracked; of the newest as predicted
     std::size_t feature_count = 0;
     std::vector<Feature> for_map, chosen;
+    Outline outline;  ///< of the chosen
   };
   /// What a scan brings to the map, kept until the next one has told where it ended.
   struct Held {

@@ -38,9 +38,10 @@ void Tracker::remember(const std::vector<Feature>& all, const std::vector<Featur
   seen.feature_count = all.size();
   thin_out(all, seen.for_map);
   seen.chosen.assign(chosen.begin(), chosen.end());
+  seen.outline.assign(chosen);
   note_prediction(seen);
   footprint_.clear();
-  footprint_.add(chosen, {}, {});
+  footprint_.add(seen.outline, {}, {});
   cells_alone_ = footprint_.cells() + (seen_count_ == 1 ? 0 : cells_alone_);
   if (seen_count_ > 2) decide();
 }
@@ -145,7 +146,7 @@ void Tracker::note_track(Seen& seen, const Pose& T_begin, const Pose& T_end) {
 int Tracker::cells_as_tracked() {
   footprint_.clear();
   for (std::size_t k = 0; k < seen_count_; ++k) {
-    footprint_.add(seen_[k].chosen, seen_[k].T_begin, seen_[k].T_end);
+    footprint_.add(seen_[k].outline, seen_[k].T_begin, seen_[k].T_end);
   }
   return footprint_.cells();
 }
@@ -157,7 +158,7 @@ Tracker::Look Tracker::look(const Twist& twist) {
     const Seen& one = seen_[k];
     const double end_s = 1e-9 * static_cast<double>(one.timing.end_ns - seen_[0].timing.end_ns);
     const double span_s = one.timing.motion_compensated ? 0.0 : span_of(one.timing);
-    footprint_.add(one.chosen, moved({}, twist, end_s - span_s), moved({}, twist, end_s));
+    footprint_.add(one.outline, moved({}, twist, end_s - span_s), moved({}, twist, end_s));
   }
   return {twist, footprint_.cells()};
 }

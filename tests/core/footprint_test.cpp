@@ -42,10 +42,12 @@ std::vector<std::vector<Feature>> two_scans(const Twist& twist) {
 }
 
 int cells_under(const std::vector<std::vector<Feature>>& scans, const Twist& supposed) {
-  Footprint footprint;
+  Footprint footprint(100000);
+  Outline outline;
   for (std::size_t k = 0; k < scans.size(); ++k) {
     const double begin_s = kSpan_s * static_cast<double>(k);
-    footprint.add(scans[k], moved({}, supposed, begin_s), moved({}, supposed, begin_s + kSpan_s));
+    outline.assign(scans[k]);
+    footprint.add(outline, moved({}, supposed, begin_s), moved({}, supposed, begin_s + kSpan_s));
   }
   return footprint.cells();
 }

@@ -78,6 +78,23 @@ TEST(MotionCheck, WhereNothingTellsNothingIsRefuted) {
   EXPECT_EQ(scans_until_refuted(false, 0.0, {1.0, 0.0}), 100);
 }
 
+// Scans that have nothing in common, as of a sensor that looks elsewhere each time.
+TEST(MotionCheck, WhereScansDoNotMeetNothingIsRefuted) {
+  std::minstd_rand random(3);
+  std::uniform_real_distribution<float> anywhere_m(-100.0F, 100.0F);
+  MotionCheck check(2000);
+  for (int k = 1; k < 100; ++k) {
+    std::vector<Feature> features(200);
+    for (Feature& f : features) {
+      f.x_m = anywhere_m(random);
+      f.y_m = anywhere_m(random);
+      f.kind = Kind::structure;
+    }
+    check.see(features, {}, {}, kSpan_s, std::llround(1e9 * kSpan_s * k));
+    EXPECT_FALSE(check.is_refuted({1.0, 0.0}));
+  }
+}
+
 TEST(MotionCheck, AfterAClearItBeginsAgain) {
   Road road(true);
   MotionCheck check(2000);
