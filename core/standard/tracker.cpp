@@ -82,7 +82,7 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
     status_ = TrackingStatus::lost;
     lost_scans_ = kScansToGiveUp;
   }
-  const Estimate result = estimate(scan, solution_, chosen);
+  Estimate result = estimate(scan, solution_, chosen);
   hook(Stage::align);
   return result;
 }

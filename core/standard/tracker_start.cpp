@@ -280,10 +280,10 @@ Tracker::Start Tracker::best_start(const Twist& tracked) {
 /// Puts the tracker on another start where all scans so far speak for it, and makes an end of it
 /// when they are enough.
 void Tracker::decide() {
-  constexpr double kOther_mps = 0.5, kOther_radps = 0.1;
+  constexpr double kApart_mps = 0.5, kApart_radps = 0.1;
   const Twist tracked = twist_so_far();
   const Start other = best_start(tracked);
-  if (differ(other.twist, tracked, kOther_mps, kOther_radps) &&
+  if (differ(other.twist, tracked, kApart_mps, kApart_radps) &&
       is_less(look(other.twist).cells, cells_as_tracked(), kProbably)) {
     rehearse(other);
   }
