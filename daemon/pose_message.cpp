@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 
 namespace lilo {
@@ -127,8 +128,15 @@ const char* to_string(TrackingStatus status) {
 }
 
 std::string new_session() {
+  std::string session;
+  renew_session(session);
+  return session;
+}
+
+void renew_session(std::string& session) {
   std::random_device device;
-  return fmt::format("{:08x}{:08x}", device(), device());
+  session.clear();
+  fmt::format_to(std::back_inserter(session), "{:08x}{:08x}", device(), device());
 }
 
 std::string_view write_pose(const PoseMessageContext& context, const PoseReport& report,

@@ -16,6 +16,8 @@ const char* to_string(TrackingStatus status);
 /// Sixteen hexadecimal digits: a gap in seq within one session is a loss, a new session has another
 /// origin.
 std::string new_session();
+/// The same in place: the publisher allocates nothing when a map is given up.
+void renew_session(std::string& session);
 
 /// What all pose datagrams of a session have in common.
 struct PoseMessageContext {

@@ -86,7 +86,7 @@ void Publisher::follow_session(const PoseReport& report) {
   }
   resets_ = report.resets;
   restarts_ = report.estimate.restarts;
-  message_.session = new_session();
+  renew_session(message_.session);
   record_.clear();
 }
 

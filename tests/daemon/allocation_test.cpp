@@ -76,6 +76,16 @@ TEST(Allocation, ReceiverHasNoneOnceWarm) {
   EXPECT_EQ(allocations - source.allocations_when_warm, 0U);
 }
 
+TEST(Allocation, ANewSessionHasNone) {
+  std::string session = new_session();
+  const std::string old = session;
+  const std::uint64_t before = allocations;
+  renew_session(session);
+  EXPECT_EQ(allocations - before, 0U);
+  EXPECT_NE(session, old);
+  EXPECT_EQ(session.size(), 16U);
+}
+
 // A pose to two sinks, covariance and all.
 TEST(Allocation, PublishingAPoseHasNone) {
   boost::asio::io_context io;
