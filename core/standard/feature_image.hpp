@@ -62,23 +62,30 @@ class FeatureImage {
     std::int32_t t_ns;
   };
   using Filled = std::array<std::uint64_t, kMaxRings / 64>;  // a bit for each ring
-  /// What is between each ring's pixel and the next's.
-  using Steps = std::array<std::int32_t, kMaxRings>;
+  /// Distances from the sensor's axis of a column's pixels; 0: empty.
+  using Flats = std::array<float, kMaxRings>;
+  struct Step {
+    bool connected = false;  // one surface
+    bool steep = false;
+  };
   void project(std::span<const Return> returns);
   [[nodiscard]] int column_of(float azimuth_rad) const;
-  [[nodiscard]] bool is_used(const Return& r) const;
+  [[nodiscard]] int place_of(int column) const;
   void classify_until(int place);
   void classify_column(int column, std::vector<Feature>& out) const;
-  [[nodiscard]] Steps steps_of(const Pixel* pixels, const Filled& filled) const;
-  void add_feature(const Pixel* column, int ring, std::int32_t below, std::int32_t above,
+  /// Between a ring and the next, which of the highest is the one below.
+  [[nodiscard]] float gap_rad(int ring) const;
+  [[nodiscard]] Flats flats_of(int column) const;
+  void add_feature(const Pixel* column, int ring, Step below, Step above,
                    std::vector<Feature>& out) const;
+  /// From the pixel of a ring to that of the next, both filled.
+  static Step step_between(const Pixel* lower, const float* flats_m, float gap_rad);
 
   int columns_;
   int margin_;  // in columns
   float nearest2_, farthest2_;
   BeamTable beams_;
-  std::array<float, kMaxRings> gap_rad_{};  // between a ring and the next
-  std::vector<Pixel> pixels_;   // valid where filled; the last takes what comes second into one
+  std::vector<Pixel> pixels_;   // valid where filled
   std::vector<Filled> filled_;  // of every column; apart, because most returns only ask this
   std::vector<Feature> features_;
   std::vector<Feature> last_features_;  // of columns to the right of straight behind
