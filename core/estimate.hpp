@@ -12,7 +12,7 @@ enum class TrackingStatus : std::uint8_t {
   initializing,  ///< no map yet, or not yet sure of the first motion
   tracking,      ///< aligned with the map
   degraded,      ///< aligned, but some direction was held to the prediction or data were missing
-  lost,          ///< not aligned: the pose is the prediction alone
+  lost,          ///< not aligned: the pose is the prediction alone; or just found to be wrong
 };
 
 /// Velocity of the sensor, in the sensor's own frame.

@@ -35,7 +35,7 @@ class Footprint {
   void clear();
 
   /// Adds one scan that lasted from `T_begin` to `T_end`, at constant velocity. What lies 128 m
-  /// from the origin along an axis is left out.
+  /// from the origin along an axis is left out, and so are more than `most`.
   void add(const Outline& scan, const Pose& T_begin, const Pose& T_end);
 
  private:
@@ -43,5 +43,12 @@ class Footprint {
   std::vector<std::uint64_t> taken_;
   int cells_ = 0;
 };
+
+/// How often scans meet under two motions together, of the cells they take up each for itself and
+/// under either. Only meetings tell motions apart, and chance moves the difference by their root: a
+/// cell is hit or missed by a few returns.
+inline int meetings(int cells_alone, int cells, int other_cells) {
+  return 2 * cells_alone - cells - other_cells;
+}
 
 }  // namespace lilo::standard

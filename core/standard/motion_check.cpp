@@ -45,9 +45,9 @@ bool MotionCheck::is_refuted(const Eigen::Vector2d& axis) {
   const int tracked = cells_under(Eigen::Vector2d::Zero());
   const int least = std::min({tracked, cells_under(one_mps), cells_under(-one_mps),
                               cells_under(other_mps), cells_under(-other_mps)});
-  // What tells is in how many cells scans meet, and a cell is hit or missed by a few returns.
-  int met = -tracked - least;
-  for (const Seen& one : seen_) met += 2 * one.cells;
+  int alone = 0;
+  for (const Seen& one : seen_) alone += one.cells;
+  const int met = meetings(alone, tracked, least);
   const double sigma = std::sqrt(std::max(tracked, met));  // where they hardly meet, nothing tells
   refuted_ = tracked - least > kClearly * sigma ? refuted_ + 1 : 0;
   if (refuted_ == 0) speed_ = (speed_ + 1) % static_cast<int>(kSpeeds_mps.size());

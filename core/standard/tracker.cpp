@@ -90,7 +90,7 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
 void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
   grow_map(timing_, features, solution_);
   ++scan_count_;
-  if (lost_scans_ >= kScansToGiveUp) {
+  if (lost_scans_ == kScansToGiveUp) {
     start_anew();
     ++restarts_;
   }

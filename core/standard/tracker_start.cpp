@@ -183,10 +183,9 @@ Tracker::Look Tracker::look_around(const Twist& about) {
   return best;
 }
 
-/// Whether what was seen speaks for the motion with `cells` and against the other. What tells is
-/// in how many cells scans meet, and a cell is hit or missed by a few returns.
+/// Whether what was seen speaks for the motion with `cells` and against the other.
 bool Tracker::is_less(int cells, int other_cells, double sigmas) const {
-  const int met = 2 * cells_alone_ - cells - other_cells;
+  const int met = meetings(cells_alone_, cells, other_cells);
   return other_cells - cells > sigmas * std::sqrt(static_cast<double>(met));
 }
 

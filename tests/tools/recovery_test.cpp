@@ -216,7 +216,7 @@ TEST(Standstill, OfTwoMinutesDoesNotDrift) {
 // tells how far one has come. Whoever follows it must notice within a second or two.
 struct Jam {
   std::uint64_t seed;
-  double duration_s, still_s;
+  double duration_s, still_s;  ///< another time to drive is another road, so more than is looked at
 };
 class Traffic : public testing::TestWithParam<Jam> {};
 
