@@ -83,7 +83,7 @@ std::vector<Key> odometry_keys() {
 std::vector<Key> default_profile_keys() {
   return {
       integer("odometry.default.columns", LILO_MEMBER(odometry.standard.columns), 90, 4096, "",
-              kRestart, "Width of the range image."),
+              kRestart, "Width of the range image. An HDL-64E's is 576 wide at most."),
       integer(
           "odometry.default.ground_features", LILO_MEMBER(odometry.standard.ground_features), 50,
           20000, "", kRestart,

@@ -61,7 +61,7 @@ struct PaperConfig {
 
 /// The default profile: features of the image plane on a map of Gaussian cells.
 struct StandardConfig {
-  int columns = 1024;             ///< width of the range image
+  int columns = 1024;             ///< width of the range image; of 64 rings 576 at most
   int ground_features = 900;      ///< features aligned, about so many
   int structure_features = 1100;  ///< everything that is not ground
   int map_features = 6000;        ///< features a keyframe adds to the map, at most

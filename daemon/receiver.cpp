@@ -148,8 +148,9 @@ void prepare_slot(ScanSlot& slot, SensorModel model, const OdometryConfig& odome
   slot.scan.returns.resize(model == SensorModel::hdl64e ? kHdl64eReturns : kVlp16Returns);
   slot.scan.clear();
   if (odometry.profile != Profile::standard) return;
-  const std::size_t rings = model == SensorModel::hdl64e ? 64 : 16;
-  slot.features.all.resize(rings * static_cast<std::size_t>(odometry.standard.columns));
+  const int rings = model == SensorModel::hdl64e ? 64 : 16;
+  const int columns = standard::FeatureImage::columns_for(rings, odometry.standard.columns);
+  slot.features.all.resize(static_cast<std::size_t>(rings * columns));
   slot.features.all.clear();
 }
 

@@ -1,6 +1,7 @@
 #include "core/standard/feature_image.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -15,18 +16,30 @@ constexpr float kSameSurface = 3.0F;
 // The lasers of one firing look up to 18 degrees apart (HDL-64E). Columns nearer to the front, and
 // those around the scan's first return, where it ends as well, may still get returns.
 constexpr float kSpread_rad = 0.35F;
+// With 64 rings, 512 to 1024 columns give the same errors. Fewer lose thin posts, more cost time.
+constexpr int kMostPixels = 64 * 576;
 
 float columns_per_rad(int columns) {
   return static_cast<float>(columns) / (2.0F * std::numbers::pi_v<float>);
 }
 
+/// Of an image `columns` wide that begins straight behind and goes clockwise.
+std::uint32_t column_of(float azimuth_rad, int columns, float per_rad) {
+  const auto column = static_cast<int>((std::numbers::pi_v<float> - azimuth_rad) * per_rad);
+  const int turned = column < columns ? column : column - columns;
+  return static_cast<std::uint32_t>(std::clamp(turned, 0, columns - 1));
+}
+
 }  // namespace
 
 FeatureImage::FeatureImage(int columns, RangeLimits limits)
-    : columns_(columns),
-      margin_(static_cast<int>(std::ceil(kSpread_rad * columns_per_rad(columns)))),
+    : most_columns_(columns),
       nearest2_(static_cast<float>(limits.min_m * limits.min_m)),
       farthest2_(static_cast<float>(limits.max_m * limits.max_m)) {}
+
+int FeatureImage::columns_for(int rings, int most) {
+  return std::min(most, kMostPixels / std::max(rings, 1));
+}
 
 const std::vector<Feature>& FeatureImage::build(const Scan& scan) {
   begin(scan.beams);
@@ -36,6 +49,8 @@ const std::vector<Feature>& FeatureImage::build(const Scan& scan) {
 
 void FeatureImage::begin(const BeamTable& beams) {
   beams_ = beams;
+  columns_ = columns_for(beams.ring_count, most_columns_);
+  margin_ = static_cast<int>(std::ceil(kSpread_rad * columns_per_rad(columns_)));
   const auto size = static_cast<std::size_t>(beams.ring_count) * static_cast<std::size_t>(columns_);
   pixels_.resize(size);
   filled_.assign(static_cast<std::size_t>(columns_), Filled{});
@@ -69,36 +84,40 @@ std::vector<Feature>& FeatureImage::finish(const Scan& scan) {
   return features_;
 }
 
-int FeatureImage::column_of(float azimuth_rad) const {
-  const auto column =
-      static_cast<int>((std::numbers::pi_v<float> - azimuth_rad) * columns_per_rad(columns_));
-  return std::clamp(column < columns_ ? column : column - columns_, 0, columns_ - 1);
-}
-
 int FeatureImage::place_of(int column) const {
   const int place = column - first_column_;
   return place < 0 ? place + columns_ : place;
 }
 
 void FeatureImage::project(std::span<const Return> returns) {
-  const int rows = beams_.ring_count;
-  const int seam = columns_ - 2 * margin_;
+  // In registers, whatever is written to the image.
+  const auto rows = static_cast<std::uint32_t>(beams_.ring_count);
+  const int columns = columns_;
+  const float per_rad = columns_per_rad(columns_);
+  const float nearest2 = nearest2_, farthest2 = farthest2_;
+  Pixel* const pixels = pixels_.data();
+  Filled* const filled = filled_.data();
   for (const Return& r : returns) {
-    const float flat2 = r.x_m * r.x_m + r.y_m * r.y_m;
-    const float range2 = flat2 + r.z_m * r.z_m;
-    if (!(range2 >= nearest2_ && range2 <= farthest2_) || r.ring >= rows) continue;  // and NaN
-    const int column = column_of(r.azimuth_rad);
-    const std::uint64_t bit = std::uint64_t{1} << (r.ring % 64U);
-    std::uint64_t& filled = filled_[static_cast<std::size_t>(column)][r.ring / 64U];
-    if ((filled & bit) != 0) continue;
-    filled |= bit;
-    pixels_[static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + r.ring] = {
-        r.x_m, r.y_m, r.z_m, r.t_ns};
-    if (first_column_ < 0) first_column_ = (column + margin_) % columns_;
-    const int place = place_of(column);
-    if (place < classified_) disturbed_ = true;
-    if (place < seam && place > front_) front_ = place;
+    const std::uint32_t ring = r.ring;
+    if (ring >= rows) continue;
+    const std::uint32_t column = column_of(r.azimuth_rad, columns, per_rad);
+    const std::uint64_t bit = std::uint64_t{1} << (ring % 64U);
+    std::uint64_t& word = filled[column][ring / 64U];
+    if ((word & bit) != 0) continue;  // most
+    const float range2 = r.x_m * r.x_m + r.y_m * r.y_m + r.z_m * r.z_m;
+    if (!(range2 >= nearest2 && range2 <= farthest2)) continue;  // and NaN
+    word |= bit;
+    pixels[column * rows + ring] = {r.x_m, r.y_m, r.z_m, r.t_ns};
+    note(static_cast<int>(column));
   }
+}
+
+/// A return fell into an empty pixel of the column.
+void FeatureImage::note(int column) {
+  if (first_column_ < 0) first_column_ = (column + margin_) % columns_;
+  const int place = place_of(column);
+  if (place <= classified_ && classified_ > 0) disturbed_ = true;  // or looked at from beside
+  if (place < columns_ - 2 * margin_ && place > front_) front_ = place;
 }
 
 void FeatureImage::classify_until(int place) {
@@ -112,18 +131,29 @@ void FeatureImage::classify_until(int place) {
   }
 }
 
-FeatureImage::Flats FeatureImage::flats_of(int column) const {
-  const int rows = beams_.ring_count;
-  const Pixel* pixels = pixels_.data() + static_cast<std::ptrdiff_t>(column) * rows;
-  const Filled& filled = filled_[static_cast<std::size_t>(column)];
-  Flats flats_m;
-  for (int ring = 0; ring < rows; ++ring) {
-    const auto k = static_cast<std::size_t>(ring);
-    const Pixel& p = pixels[ring];
-    const bool is_filled = (filled[k / 64] >> (k % 64) & 1U) != 0;
-    flats_m[k] = is_filled ? std::sqrt(p.x_m * p.x_m + p.y_m * p.y_m) : 0.0F;
+void FeatureImage::gather(int column, Gathered& g) const {
+  const auto rows = static_cast<std::size_t>(beams_.ring_count);
+  const auto pixels_of = [&](int c) { return pixels_.data() + static_cast<std::size_t>(c) * rows; };
+  const auto flat_m = [](const Pixel& p) { return std::sqrt(p.x_m * p.x_m + p.y_m * p.y_m); };
+  std::copy_n(pixels_of(column), rows, g.pixels.begin());
+  g.own = filled_[static_cast<std::size_t>(column)];
+  for (std::size_t k = 0; k < rows; ++k) {
+    g.flats_m[k] = (g.own[k / 64] >> (k % 64) & 1U) != 0 ? flat_m(g.pixels[k]) : 0.0F;
   }
-  return flats_m;
+  Filled have = g.own;
+  const int place = place_of(column);
+  for (const int side : {place > 0 ? -1 : 0, place + 1 < columns_ ? 1 : 0}) {
+    const int other = (column + side + columns_) % columns_;
+    for (std::size_t word = 0; word < have.size(); ++word) {
+      std::uint64_t missing = filled_[static_cast<std::size_t>(other)][word] & ~have[word];
+      have[word] |= missing;
+      for (; missing != 0; missing &= missing - 1) {
+        const std::size_t k = word * 64 + static_cast<std::size_t>(std::countr_zero(missing));
+        g.pixels[k] = pixels_of(other)[k];
+        g.flats_m[k] = flat_m(g.pixels[k]);
+      }
+    }
+  }
 }
 
 FeatureImage::Step FeatureImage::step_between(const Pixel* lower, const float* flats_m,
@@ -131,17 +161,20 @@ FeatureImage::Step FeatureImage::step_between(const Pixel* lower, const float* f
   const float dd = flats_m[1] - flats_m[0];
   const float dz = lower[1].z_m - lower[0].z_m;
   const bool steep = std::abs(dz) > kSteep * std::abs(dd);
-  // Rings are range * gap apart across the ray, and farther on what the ray grazes.
+  // Rings are range * gap apart across the ray, and farther on what the ray grazes: by the ratio of
+  // flat to z, but not beyond the range.
   const float across_m = flats_m[0] * gap_rad;
-  const float grazing = std::max(std::abs(lower->z_m) / flats_m[0], gap_rad);
-  const float reach_m = kSameSurface * (steep ? across_m : across_m / grazing);
-  return {dd * dd + dz * dz < reach_m * reach_m, steep};
+  const float grazing_m = steep ? flats_m[0] : std::max(std::abs(lower->z_m), across_m);
+  const float reach_m2 = kSameSurface * across_m * flats_m[0];
+  return {(dd * dd + dz * dz) * grazing_m * grazing_m < reach_m2 * reach_m2, steep};
 }
 
 void FeatureImage::classify_column(int column, std::vector<Feature>& out) const {
   const int rows = beams_.ring_count;
-  const Pixel* pixels = pixels_.data() + static_cast<std::ptrdiff_t>(column) * rows;
-  const Flats flats_m = flats_of(column);
+  Gathered gathered;
+  gather(column, gathered);
+  const Pixel* pixels = gathered.pixels.data();
+  const Flats& flats_m = gathered.flats_m;
   Step below;
   for (int ring = 0; ring < rows; ++ring) {
     Step above;
@@ -149,7 +182,8 @@ void FeatureImage::classify_column(int column, std::vector<Feature>& out) const 
     if (ring + 1 < rows && flats_m[k] > 0.0F && flats_m[k + 1] > 0.0F) {
       above = step_between(pixels + ring, flats_m.data() + k, gap_rad(ring));
     }
-    if (flats_m[k] > 0.0F) add_feature(pixels, ring, below, above, out);
+    const bool is_own = (gathered.own[k / 64] >> (k % 64) & 1U) != 0;
+    if (is_own) add_feature(pixels, ring, below, above, out);
     below = above;
   }
 }

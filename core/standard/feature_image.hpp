@@ -45,6 +45,8 @@ struct RangeLimits {
 class FeatureImage {
  public:
   FeatureImage(int columns, RangeLimits limits);
+  /// The width of the image for so many rings: `most`, or less where it would get too many pixels.
+  static int columns_for(int rings, int most);
 
   void begin(const BeamTable& beams);
   /// The next returns of the scan, in its order.
@@ -64,25 +66,33 @@ class FeatureImage {
   using Filled = std::array<std::uint64_t, kMaxRings / 64>;  // a bit for each ring
   /// Distances from the sensor's axis of a column's pixels; 0: empty.
   using Flats = std::array<float, kMaxRings>;
+  /// A column as its own pixels see it. A firing may straddle two columns: where this one got no
+  /// return of a ring, that of the column before or after stands in.
+  struct Gathered {
+    std::array<Pixel, kMaxRings> pixels;  ///< valid where flats_m > 0
+    Flats flats_m;
+    Filled own;
+  };
   struct Step {
     bool connected = false;  // one surface
     bool steep = false;
   };
   void project(std::span<const Return> returns);
-  [[nodiscard]] int column_of(float azimuth_rad) const;
+  void note(int column);
   [[nodiscard]] int place_of(int column) const;
   void classify_until(int place);
   void classify_column(int column, std::vector<Feature>& out) const;
   /// Between a ring and the next, which of the highest is the one below.
   [[nodiscard]] float gap_rad(int ring) const;
-  [[nodiscard]] Flats flats_of(int column) const;
+  void gather(int column, Gathered& gathered) const;
   void add_feature(const Pixel* column, int ring, Step below, Step above,
                    std::vector<Feature>& out) const;
   /// From the pixel of a ring to that of the next, both filled.
   static Step step_between(const Pixel* lower, const float* flats_m, float gap_rad);
 
-  int columns_;
-  int margin_;  // in columns
+  int most_columns_;
+  int columns_ = 0;  // for these beams
+  int margin_ = 0;   // in columns
   float nearest2_, farthest2_;
   BeamTable beams_;
   std::vector<Pixel> pixels_;   // valid where filled

@@ -197,52 +197,6 @@ TEST(DefaultProfile, AScanWithoutBeamsIsNoReasonToThrow) {
   EXPECT_NO_THROW(odometry.process(Scan{}));
 }
 
-TEST(FeatureImage, TellsGroundFromWalls) {
-  const test::Scene scene = test::yard();
-  const Scan scan = test::still_scan_of(scene, k16, {});
-  standard::FeatureImage image(1024, {});
-  int ground = 0, structure = 0, wrong = 0;
-  for (const standard::Feature& f : image.build(scan)) {
-    const bool on_ground = std::abs(static_cast<double>(f.z_m) + 1.5) < 1e-3;
-    const bool said_ground = f.kind == standard::Kind::ground;
-    (said_ground ? ground : structure)++;
-    if (on_ground != said_ground) ++wrong;
-  }
-  EXPECT_GT(ground, 2000);
-  EXPECT_GT(structure, 4000);
-  EXPECT_LT(wrong, (ground + structure) / 100);
-}
-
-// A bar across the road, 30 m ahead, that one ring of 16 hits.
-TEST(FeatureImage, WhatOneRingHitsMayBeAsHighAsTheNextOneLooks) {
-  const double w = 3.0 * std::numbers::pi / 180.0, gap_rad = 2.0 * std::numbers::pi / 180.0;
-  Scan scan;
-  scan.beams = k16;
-  scan.end_ns = 100'000'000;
-  standard::CellMap map({.cell_m = 0.5F});
-  standard::FeatureImage image(1024, {});
-  for (int k = -10; k <= 10; ++k) {
-    const double azimuth = 0.006 * k, flat_m = 30.0 / std::cos(azimuth);
-    scan.returns.push_back({.x_m = 30.0F,
-                            .y_m = static_cast<float>(flat_m * std::sin(azimuth)),
-                            .z_m = static_cast<float>(flat_m * std::tan(w)),
-                            .azimuth_rad = static_cast<float>(azimuth),
-                            .ring = 9});
-  }
-  for (const standard::Feature& f : image.build(scan)) {
-    const Eigen::Vector3d p(f.x_m, f.y_m, f.z_m), up(f.dx_m, f.dy_m, f.dz_m);
-    EXPECT_NEAR(up.norm(), p.norm() * gap_rad, 1e-3);
-    EXPECT_NEAR(up.normalized().dot(p.normalized()), 0.0, 1e-5);
-    EXPECT_GT(up.z(), 0.0);
-    map.insert(p, up.cast<float>());
-  }
-  const standard::Match match = map.find({30.0, 0.0, 30.0 * std::tan(w)});
-  ASSERT_NE(match.information, nullptr);
-  const standard::Symmetric& i = *match.information;  // xx xy xz yy yz zz
-  EXPECT_GT(i[0], 50.0F);                             // how far it is
-  EXPECT_LT(i[5], 0.05F * i[0]);                      // but not how high
-}
-
 TEST(Trajectory, IsTheCubicThroughItsKnots) {
   standard::Trajectory t;
   t.span_s = 0.1;

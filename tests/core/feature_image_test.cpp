@@ -1,0 +1,130 @@
+// What the image plane says of returns, against scenes whose every range has a closed form.
+#include "core/standard/feature_image.hpp"
+
+#include "core/standard/cell_map.hpp"
+#include "tests/core/analytic_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <vector>
+
+namespace lilo {
+namespace {
+
+const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
+
+TEST(FeatureImage, TellsGroundFromWalls) {
+  const test::Scene scene = test::yard();
+  const Scan scan = test::still_scan_of(scene, k16, {});
+  standard::FeatureImage image(1024, {});
+  int ground = 0, structure = 0, wrong = 0;
+  for (const standard::Feature& f : image.build(scan)) {
+    const bool on_ground = std::abs(static_cast<double>(f.z_m) + 1.5) < 1e-3;
+    const bool said_ground = f.kind == standard::Kind::ground;
+    (said_ground ? ground : structure)++;
+    if (on_ground != said_ground) ++wrong;
+  }
+  EXPECT_GT(ground, 2000);
+  EXPECT_GT(structure, 4000);
+  EXPECT_LT(wrong, (ground + structure) / 100);
+}
+
+// A bar across the road, 30 m ahead, that one ring of 16 hits.
+TEST(FeatureImage, WhatOneRingHitsMayBeAsHighAsTheNextOneLooks) {
+  const double w = 3.0 * std::numbers::pi / 180.0, gap_rad = 2.0 * std::numbers::pi / 180.0;
+  Scan scan;
+  scan.beams = k16;
+  scan.end_ns = 100'000'000;
+  standard::CellMap map({.cell_m = 0.5F});
+  standard::FeatureImage image(1024, {});
+  for (int k = -10; k <= 10; ++k) {
+    const double azimuth = 0.006 * k, flat_m = 30.0 / std::cos(azimuth);
+    scan.returns.push_back({.x_m = 30.0F,
+                            .y_m = static_cast<float>(flat_m * std::sin(azimuth)),
+                            .z_m = static_cast<float>(flat_m * std::tan(w)),
+                            .azimuth_rad = static_cast<float>(azimuth),
+                            .ring = 9});
+  }
+  for (const standard::Feature& f : image.build(scan)) {
+    const Eigen::Vector3d p(f.x_m, f.y_m, f.z_m), up(f.dx_m, f.dy_m, f.dz_m);
+    EXPECT_NEAR(up.norm(), p.norm() * gap_rad, 1e-3);
+    EXPECT_NEAR(up.normalized().dot(p.normalized()), 0.0, 1e-5);
+    EXPECT_GT(up.z(), 0.0);
+    map.insert(p, up.cast<float>());
+  }
+  const standard::Match match = map.find({30.0, 0.0, 30.0 * std::tan(w)});
+  ASSERT_NE(match.information, nullptr);
+  const standard::Symmetric& i = *match.information;  // xx xy xz yy yz zz
+  EXPECT_GT(i[0], 50.0F);                             // how far it is
+  EXPECT_LT(i[5], 0.05F * i[0]);                      // but not how high
+}
+
+// The lasers of one firing of a VLP-16 look up to 0.13 degrees apart, so that a firing straddles
+// two columns as narrow. Flat ground is ground all the same.
+TEST(FeatureImage, FindsTheNextRingInTheColumnBeside) {
+  test::Scene plain;
+  plain.planes = {{{0.0, 0.0, 1.0}, -1.5}};
+  Scan scan = test::still_scan_of(plain, k16, {});
+  for (Return& r : scan.returns) {
+    const double turn_rad = -2.0 * std::numbers::pi / 1800.0 * (r.ring * 5 % 16) / 16.0;
+    const double x_m = static_cast<double>(r.x_m), y_m = static_cast<double>(r.y_m);
+    r.x_m = static_cast<float>(std::cos(turn_rad) * x_m - std::sin(turn_rad) * y_m);
+    r.y_m = static_cast<float>(std::sin(turn_rad) * x_m + std::cos(turn_rad) * y_m);
+    r.azimuth_rad = std::atan2(r.y_m, r.x_m);
+  }
+  for (const int columns : {720, 1024, 1800, 2048}) {
+    standard::FeatureImage image(columns, {});
+    int all = 0, wrong = 0;
+    for (const standard::Feature& f : image.build(scan)) {
+      if (f.ring == 7) continue;  // meets the ground 86 m off, three times as far as the next
+      ++all;
+      if (f.kind != standard::Kind::ground) ++wrong;
+    }
+    EXPECT_GT(all, 5 * columns) << columns;  // of seven rings
+    EXPECT_LE(wrong, 7) << columns << ": more than a column of " << all;
+  }
+}
+
+// Ground that the upper ring sees in one direction only. However late that return comes, the
+// columns beside it have used it.
+TEST(FeatureImage, WaitsForTheColumnBeside) {
+  constexpr int kColumns = 360;
+  const BeamTable beams = test::even_beams(2, -15.0, -13.0);
+  const auto ground = [&](int column, std::uint8_t ring) {
+    const double azimuth = std::numbers::pi * (1.0 - 2.0 * (column + 0.5) / kColumns);
+    const double flat_m = 1.5 / std::tan(static_cast<double>(-beams.elevation_rad[ring]));
+    return Return{.x_m = static_cast<float>(flat_m * std::cos(azimuth)),
+                  .y_m = static_cast<float>(flat_m * std::sin(azimuth)),
+                  .z_m = -1.5F,
+                  .azimuth_rad = static_cast<float>(azimuth),
+                  .ring = ring};
+  };
+  for (int seen = 60; seen <= 100; ++seen) {
+    Scan scan;
+    scan.beams = beams;
+    scan.end_ns = 100'000'000;
+    for (int column = 0; column < kColumns; ++column) {
+      if (column == 101) scan.returns.push_back(ground(seen, 1));
+      scan.returns.push_back(ground(column, 0));
+    }
+    standard::FeatureImage image(kColumns, {});
+    image.begin(beams);
+    image.add(std::span(scan.returns).first(101));
+    image.add(std::span(scan.returns).subspan(101));
+    std::vector<int> beside;  // columns, from the one with the return
+    for (const standard::Feature& f : image.finish(scan)) {
+      if (f.kind != standard::Kind::ground || f.ring == 1) continue;
+      const double azimuth = std::atan2(static_cast<double>(f.y_m), static_cast<double>(f.x_m));
+      const double column = (1.0 - azimuth / std::numbers::pi) * kColumns / 2.0;
+      beside.push_back(static_cast<int>(column) - seen);
+    }
+    EXPECT_EQ(beside, (std::vector{-1, 0, 1})) << "seen in column " << seen;
+  }
+}
+
+}  // namespace
+}  // namespace lilo
