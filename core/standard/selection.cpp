@@ -63,4 +63,20 @@ bool Selection::take_evenly(const std::vector<Feature>& all) {
   return complete;
 }
 
+void thin_out(const std::vector<Feature>& all, std::size_t most, std::vector<Feature>& fewer) {
+  constexpr std::uint32_t kGolden = 2654435769U;  // of 2^32: rings beside each other lie apart
+  const std::uint64_t whole = std::max(all.size(), most);
+  std::array<std::uint64_t, kMaxRings> owed{};  // to each ring, in parts of a feature
+  for (std::size_t ring = 0; ring < owed.size(); ++ring) {
+    owed[ring] = static_cast<std::uint32_t>(ring * kGolden) * whole >> 32U;
+  }
+  fewer.clear();
+  for (const Feature& f : all) {
+    owed[f.ring] += most;
+    if (owed[f.ring] < whole) continue;
+    owed[f.ring] -= whole;
+    if (fewer.size() < most) fewer.push_back(f);
+  }
+}
+
 }  // namespace lilo::standard

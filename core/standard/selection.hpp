@@ -35,4 +35,8 @@ class Selection {
   std::vector<Feature> chosen_;
 };
 
+/// `most` of them at most, evenly along each ring. In the image's order every second feature would
+/// be every second ring, wherever columns are filled alike.
+void thin_out(const std::vector<Feature>& all, std::size_t most, std::vector<Feature>& fewer);
+
 }  // namespace lilo::standard

@@ -53,12 +53,10 @@ Tracker::Tracker(const OdometryConfig& config)
       footprint_(selection_.most()),
       motion_check_(selection_.most()),
       information_(first_information()) {
-  const StandardConfig& c = config.standard;
-  const auto for_map = static_cast<std::size_t>(c.map_features);
-  held_.features.reserve(for_map);
+  held_.features.reserve(for_map());
   looks_.reserve(kMostLooks);
   for (Seen& seen : seen_) {
-    seen.for_map.reserve(for_map);
+    seen.for_map.reserve(for_map());
     seen.chosen.reserve(selection_.most());
     seen.outline.reserve(selection_.most());
   }
@@ -220,17 +218,9 @@ void Tracker::grow_map(const Timing& scan, const std::vector<Feature>& features,
   drift_.inherit(alignment_covariance(), keyframes_);
 }
 
-/// Evenly, to what a keyframe may add to the map.
-void Tracker::thin_out(const std::vector<Feature>& features, std::vector<Feature>& fewer) const {
-  const auto limit = static_cast<std::size_t>(config_.standard.map_features);
-  const std::size_t step = std::max<std::size_t>(1, (features.size() + limit - 1) / limit);
-  fewer.clear();
-  for (std::size_t k = 0; k < features.size(); k += step) fewer.push_back(features[k]);
-}
-
 void Tracker::hold(const std::vector<Feature>& features, const Trajectory& trajectory,
                    std::int64_t end_ns) {
-  thin_out(features, held_.features);
+  thin_out(features, for_map(), held_.features);
   held_.trajectory = trajectory;
   held_.end_ns = end_ns;
   held_.waiting = true;

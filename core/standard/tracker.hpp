@@ -66,7 +66,10 @@ class Tracker {
   void accept(const Timing& scan, const Prior& prior, const Solution& solution);
   void grow_map(const Timing& scan, const std::vector<Feature>& features, const Solution& solution);
   [[nodiscard]] bool is_young(const Solution& solution) const;
-  void thin_out(const std::vector<Feature>& features, std::vector<Feature>& fewer) const;
+  /// How many features a keyframe may add to the map.
+  [[nodiscard]] std::size_t for_map() const {
+    return static_cast<std::size_t>(config_.standard.map_features);
+  }
   void hold(const std::vector<Feature>& features, const Trajectory& trajectory,
             std::int64_t end_ns);
   void insert_held();

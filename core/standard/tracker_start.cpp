@@ -36,7 +36,7 @@ void Tracker::remember(const std::vector<Feature>& all, const std::vector<Featur
   Seen& seen = seen_[seen_count_++];
   seen.timing = timing_;
   seen.feature_count = all.size();
-  thin_out(all, seen.for_map);
+  thin_out(all, for_map(), seen.for_map);
   seen.chosen.assign(chosen.begin(), chosen.end());
   seen.outline.assign(chosen);
   note_prediction(seen);

@@ -1,0 +1,61 @@
+// Which features are taken.
+#include "core/standard/selection.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace lilo::standard {
+namespace {
+
+// Open ground fills every column with the same rings.
+std::vector<Feature> filled_columns(int columns, int rings) {
+  std::vector<Feature> all;
+  for (int column = 0; column < columns; ++column) {
+    for (int ring = 0; ring < rings; ++ring) {
+      Feature f{};
+      f.x_m = static_cast<float>(column);
+      f.ring = static_cast<std::uint8_t>(ring);
+      all.push_back(f);
+    }
+  }
+  return all;
+}
+
+TEST(ThinOut, LeavesNoRingAndNoDirectionOut) {
+  constexpr int kColumns = 1000, kRings = 8;
+  const std::vector<Feature> all = filled_columns(kColumns, kRings);
+  std::vector<Feature> fewer;
+  for (const int step : {2, 3, 4, 8}) {
+    thin_out(all, all.size() / static_cast<std::size_t>(step), fewer);
+    std::array<int, kRings> count{}, last{};
+    last.fill(-1);
+    for (const Feature& f : fewer) {
+      const int column = static_cast<int>(f.x_m);
+      EXPECT_LE(column - last[f.ring], step + 1) << "ring " << int{f.ring};
+      last[f.ring] = column;
+      ++count[f.ring];
+    }
+    for (const int n : count) EXPECT_NEAR(n, kColumns / step, 1) << "every " << step;
+  }
+}
+
+TEST(ThinOut, NeverTakesMoreThanItMay) {
+  std::vector<Feature> fewer;
+  for (const std::size_t most : {1UL, 7UL, 999UL, 6000UL}) {
+    thin_out(filled_columns(1023, 7), most, fewer);
+    EXPECT_LE(fewer.size(), most);
+    EXPECT_GE(fewer.size() + 7, most);
+  }
+}
+
+TEST(ThinOut, TakesAllOfFew) {
+  std::vector<Feature> fewer;
+  thin_out(filled_columns(10, 4), 40, fewer);
+  EXPECT_EQ(fewer.size(), 40U);
+}
+
+}  // namespace
+}  // namespace lilo::standard
