@@ -20,6 +20,9 @@ struct Match {
 struct CellMapConfig {
   float cell_m = 0.5F;
   float noise_m = 0.02F;  ///< 1 sigma of a return across a surface
+  /// Ground: informs of its height and slope only. How far it was seen, a strip before a wall or
+  /// one ring, moves with the sensor and would hold it where it is.
+  bool level = false;
   int capacity = 100000;  ///< cells; beyond it new ones are refused and counted
   /// Points a cell remembers; older ones fade. What is seen of a thing moves as the sensor passes
   /// it: held against its oldest views, a scan is dragged back, and every path comes out too short.

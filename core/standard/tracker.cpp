@@ -18,17 +18,20 @@ constexpr int kScansToGiveUp = 10;  // that saw enough and found nothing of it i
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
-CellMap make_map(const StandardConfig& config, double cell_m, int capacity) {
+CellMap make_map(const StandardConfig& config, Kind kind, double cell_m, int capacity) {
   return CellMap({.cell_m = static_cast<float>(cell_m),
                   .noise_m = static_cast<float>(config.noise_m),
+                  .level = kind == Kind::ground,
                   .capacity = capacity});
 }
 
 LocalMaps make_maps(const StandardConfig& c) {
-  const auto fine = [&] { return make_map(c, c.cell_m, c.map_cells); };
+  const auto fine = [&](Kind kind) { return make_map(c, kind, c.cell_m, c.map_cells); };
   // Cells of a surface grow fewer with the square of their size; a quarter leaves room.
-  const auto coarse = [&] { return make_map(c, c.coarse_cell_m, c.map_cells / 4); };
-  return {fine(), coarse(), fine(), coarse()};
+  const auto coarse = [&](Kind kind) {
+    return make_map(c, kind, c.coarse_cell_m, c.map_cells / 4);
+  };
+  return {fine(Kind::ground), coarse(Kind::ground), fine(Kind::structure), coarse(Kind::structure)};
 }
 
 SolverConfig solver_config(const StandardConfig& c) {

@@ -93,6 +93,25 @@ TEST_F(Filled, ASingleRingOnTheGroundSaysNothingAlongItsBeam) {
   EXPECT_LT(outward.dot(O * outward), 0.01F * up.dot(O * up));
 }
 
+// Before a wall the lowest ring sees a strip of ground, at the same distance wherever the sensor
+// is.
+TEST_F(Filled, AStripOfGroundSaysNothingOfWhereItEnds) {
+  CellMap ground({.level = true});
+  for (int k = 0; k < 2000; ++k) {
+    const Eigen::Vector3d p(-2.9 + uniform(-0.08, 0.08), uniform(-2.0, 2.0), -0.8);
+    map_.insert(p, no_reach_);
+    ground.insert(p, no_reach_);
+  }
+  const Match match = ground.find({-2.9, 0.1, -0.8});
+  ASSERT_NE(match.information, nullptr);
+  const Eigen::Matrix3f O = matrix_of(*match.information);
+  EXPECT_GT(O(2, 2), 1000.0F);
+  EXPECT_LT(O(0, 0), 1e-3F * O(2, 2));
+  EXPECT_LT(O(1, 1), 1e-3F * O(2, 2));
+  const Match of_wall = map_.find({-2.9, 0.1, -0.8});  // a rail of that width would say it
+  EXPECT_GT(matrix_of(*of_wall.information)(0, 0), 30.0F);
+}
+
 TEST_F(Filled, KnowsNothingWhereNothingWasSeen) {
   EXPECT_EQ(map_.find({1.0, 2.0, 3.0}).information, nullptr);
   for (int k = 0; k < 5; ++k) map_.insert({0.1, 0.1, 0.1}, no_reach_);  // one too few
