@@ -143,11 +143,12 @@ void CellMap::add(std::int32_t at, const Eigen::Vector3d& point_m, const Eigen::
   const Index& i = cells_[static_cast<std::size_t>(at)].index;
   const Eigen::Vector3f p = (point_m - center_of(i)).cast<float>();
   // Seen through a window of three cells, a longer reach is just "all of it".
-  const float window_m = 3.0F * config_.cell_m;
-  const float excess = std::max(1.0F, reach_m.squaredNorm() / (window_m * window_m));
+  const float window2 = 9.0F * config_.cell_m * config_.cell_m;
+  const float reach2 = reach_m.squaredNorm();
+  const float spread = reach2 > window2 ? window2 / (12.0F * reach2) : 1.0F / 12.0F;  // if even
   sums.count += 1.0F;
   sums.point += p;
-  sums.square += outer(p) + outer(reach_m) / (12.0F * excess);  // variance of an even spread
+  sums.square += outer(p) + spread * outer(reach_m);
 }
 
 Match CellMap::match(std::int32_t at, const Eigen::Vector3d& point_m) {
@@ -191,7 +192,8 @@ CellMap::Sums CellMap::sums_around(const Index& i) const {
 }
 
 void CellMap::fit(Cell& cell) const {
-  cell.refit_at = keyframe_ + (keyframe_ - cell.born < kYoung ? 1 : 6);
+  const std::uint32_t age = keyframe_ - cell.born;
+  cell.refit_at = keyframe_ + (age < kYoung ? 1 : std::max(6U, age / 2));
   cell.information.setZero();
   const Sums sums = sums_around(cell.index);
   if (sums.count < kMinCount) return;
