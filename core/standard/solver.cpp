@@ -3,7 +3,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace lilo::standard {
 namespace {
@@ -44,6 +46,23 @@ KnotInformation marginal_of_last(const Matrix& H) {
   const Matrix rest = H.topLeftCorner(n, n);
   const Matrix cross = H.topRightCorner(n, kKnotSize);
   return H.bottomRightCorner<kKnotSize, kKnotSize>() - cross.transpose() * rest.ldlt().solve(cross);
+}
+
+Eigen::Matrix3d symmetric(const double* s) {
+  Eigen::Matrix3d m;
+  m << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  return m;
+}
+
+/// J'OJ and -J'Or of a bin's residuals, by rotation and translation.
+std::pair<Matrix6d, Vector6d> normal_equations(const ResidualSums& sums) {
+  Matrix6d H;
+  H.topLeftCorner<3, 3>() = symmetric(sums.data());
+  H.topRightCorner<3, 3>() =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&sums[6]);
+  H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
+  H.bottomRightCorner<3, 3>() = symmetric(&sums[15]);
+  return {H, Eigen::Map<const Vector6d>(&sums[21])};
 }
 
 }  // namespace
@@ -111,10 +130,7 @@ std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t fi
 void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                         Solution& solution) {
   sample(solution.trajectory, sampled_);
-  for (Bin& bin : bins_) {
-    bin.H.setZero();
-    bin.b.setZero();
-  }
+  for (ResidualSums& bin : bins_) bin.fill(0.0);
   Sums sums;
   solution.asked = solution.matched = 0;
   const float data_weight = config_.data_weight * static_cast<float>(stride);
@@ -141,27 +157,52 @@ void Solver::add_residual(const Asked& one, const Match& match, float data_weigh
   const bool ground = one.feature->kind == Kind::ground;
   const Eigen::Vector3f& r = match.from_mean_m;
   const Symmetric& i = *match.information;
-  Eigen::Matrix3f information;
-  information << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
-  const Eigen::Vector3f Or = information * r;
+  Eigen::Matrix3f O;
+  O << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
+  const Eigen::Vector3f Or = O * r;
   const float square = r.dot(Or);
   const float kernel = ground ? config_.ground_kernel : config_.structure_kernel;
   const float robust = 1.0F / (1.0F + square / (kernel * kernel));
-  const float w = robust * data_weight;
   sums.weights += static_cast<double>(robust);
   if (!ground) sums.structure += static_cast<double>(robust);
   sums.squares += static_cast<double>(robust * square);
-  // J = [-[turned]x  I]: J'OJ and J'Or in blocks.
+  // J = [-[p]x  I] with p as turned: [p]x crosses columns from the left, its transpose rows from
+  // the right.
   const Eigen::Vector3f& p = one.turned_m;
-  Eigen::Matrix3f cross;
-  cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
-  const Eigen::Matrix3f CO = cross * information;  // -J_w' O = [p]x O
-  Bin& bin = bins_[static_cast<std::size_t>(std::lround(one.feature->s * kBins))];
-  bin.H.topLeftCorner<3, 3>() += (w * (CO * cross.transpose())).cast<double>();
-  bin.H.topRightCorner<3, 3>() += (w * CO).cast<double>();
-  bin.H.bottomRightCorner<3, 3>() += (w * information).cast<double>();
-  bin.b.head<3>() -= (w * (cross * Or)).cast<double>();
-  bin.b.tail<3>() -= (w * Or).cast<double>();
+  Eigen::Matrix3f C;  // [p]x O
+  for (int k = 0; k < 3; ++k) C.col(k) = p.cross(O.col(k));
+  const Eigen::Vector3f pOr = p.cross(Or);
+  const std::array<float, std::tuple_size_v<ResidualSums>> terms{p.y() * C(0, 2) - p.z() * C(0, 1),
+                                                                 p.z() * C(0, 0) - p.x() * C(0, 2),
+                                                                 p.x() * C(0, 1) - p.y() * C(0, 0),
+                                                                 p.z() * C(1, 0) - p.x() * C(1, 2),
+                                                                 p.x() * C(1, 1) - p.y() * C(1, 0),
+                                                                 p.x() * C(2, 1) - p.y() * C(2, 0),
+                                                                 C(0, 0),
+                                                                 C(0, 1),
+                                                                 C(0, 2),
+                                                                 C(1, 0),
+                                                                 C(1, 1),
+                                                                 C(1, 2),
+                                                                 C(2, 0),
+                                                                 C(2, 1),
+                                                                 C(2, 2),
+                                                                 i[0],
+                                                                 i[1],
+                                                                 i[2],
+                                                                 i[3],
+                                                                 i[4],
+                                                                 i[5],
+                                                                 -pOr.x(),
+                                                                 -pOr.y(),
+                                                                 -pOr.z(),
+                                                                 -Or.x(),
+                                                                 -Or.y(),
+                                                                 -Or.z()};
+  const float w = robust * data_weight;
+  ResidualSums& bin =
+      bins_[static_cast<std::size_t>(one.feature->s * kBins + 0.5F)];  // to the nearest
+  for (std::size_t k = 0; k < terms.size(); ++k) bin[k] += static_cast<double>(w * terms[k]);
 }
 
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior) {
@@ -180,15 +221,14 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     Unknowns b = Unknowns::Zero(n);
     solution.data_information.setZero();
     for (int bin = 0; bin <= kBins; ++bin) {
-      Matrix6d& A = bins_[static_cast<std::size_t>(bin)].H;
-      A.bottomLeftCorner<3, 3>() = A.topRightCorner<3, 3>().transpose();
+      const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
       solution.data_information += A / static_cast<double>(config_.data_weight);
       const KnotWeights w =
           weights_at(static_cast<double>(bin) / kBins, config_.segments, prior.span_s);
       for (int i = 0; i < 4; ++i) {
         const int row = kKnotSize * w.first + 6 * i;
         const double wi = w.weight[static_cast<std::size_t>(i)];
-        b.segment<6>(row) += wi * bins_[static_cast<std::size_t>(bin)].b;
+        b.segment<6>(row) += wi * c;
         for (int j = 0; j < 4; ++j) {
           H.block<6, 6>(row, kKnotSize * w.first + 6 * j) +=
               wi * w.weight[static_cast<std::size_t>(j)] * A;

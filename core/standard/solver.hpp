@@ -65,6 +65,11 @@ struct Solution {
   bool converged = false;
 };
 
+/// What residuals sum up to, for a pose (rotation, translation): of the symmetric J'OJ the block of
+/// the rotation (xx xy xz yy yz zz), the one beside it row by row, and that of the translation;
+/// then -J'Or.
+using ResidualSums = std::array<double, 6 + 9 + 6 + 6>;
+
 /// Aligns features with the maps. Keeps its working memory between calls.
 class Solver {
  public:
@@ -76,10 +81,6 @@ class Solver {
 
  private:
   static constexpr int kBins = 32;  // a scan's residuals share one of so many instants
-  struct Bin {
-    Matrix6d H;
-    Vector6d b;
-  };
   /// A feature under the trajectory, and its cell.
   struct Asked {
     const Feature* feature = nullptr;
@@ -99,7 +100,7 @@ class Solver {
 
   SolverConfig config_;
   Sampled sampled_;
-  std::array<Bin, kBins + 1> bins_;
+  std::array<ResidualSums, kBins + 1> bins_;
   std::array<Asked, 32> asked_;
 };
 

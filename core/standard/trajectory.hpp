@@ -69,7 +69,7 @@ struct Sampled {
            (static_cast<double>(s) - static_cast<double>(k) / kInstants) * velocity[k];
   }
   static std::size_t instant_of(float s) {
-    return static_cast<std::size_t>(std::lround(s * kInstants));
+    return static_cast<std::size_t>(s * kInstants + 0.5F);  // lround() is a call
   }
 };
 void sample(const Trajectory& trajectory, Sampled& sampled);
