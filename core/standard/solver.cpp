@@ -48,7 +48,7 @@ KnotInformation marginal_of_last(const Matrix& H) {
   return H.bottomRightCorner<kKnotSize, kKnotSize>() - cross.transpose() * rest.ldlt().solve(cross);
 }
 
-Eigen::Matrix3d symmetric(const double* s) {
+Eigen::Matrix3d symmetric(const Vector6d& s) {
   Eigen::Matrix3d m;
   m << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
   return m;
@@ -57,12 +57,13 @@ Eigen::Matrix3d symmetric(const double* s) {
 /// J'OJ and -J'Or of a bin's residuals, by rotation and translation.
 std::pair<Matrix6d, Vector6d> normal_equations(const ResidualSums& sums) {
   Matrix6d H;
-  H.topLeftCorner<3, 3>() = symmetric(sums.data());
-  H.topRightCorner<3, 3>() =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&sums[6]);
+  H.topLeftCorner<3, 3>() = symmetric(sums.head<6>());
+  for (int row = 0; row < 3; ++row) {
+    H.block<1, 3>(row, 3) = sums.segment<3>(6 + 3 * row).transpose();
+  }
   H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
-  H.bottomRightCorner<3, 3>() = symmetric(&sums[15]);
-  return {H, Eigen::Map<const Vector6d>(&sums[21])};
+  H.bottomRightCorner<3, 3>() = symmetric(sums.segment<6>(15));
+  return {H, sums.tail<6>()};
 }
 
 }  // namespace
@@ -130,7 +131,7 @@ std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t fi
 void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                         Solution& solution) {
   sample(solution.trajectory, sampled_);
-  for (ResidualSums& bin : bins_) bin.fill(0.0);
+  for (ResidualSums& bin : bins_) bin.setZero();
   Sums sums;
   solution.asked = solution.matched = 0;
   const float data_weight = config_.data_weight * static_cast<float>(stride);
@@ -171,38 +172,16 @@ void Solver::add_residual(const Asked& one, const Match& match, float data_weigh
   const Eigen::Vector3f& p = one.turned_m;
   Eigen::Matrix3f C;  // [p]x O
   for (int k = 0; k < 3; ++k) C.col(k) = p.cross(O.col(k));
+  const Eigen::Vector3f xx = p.cross(C.row(0)), yy = p.cross(C.row(1)), zz = p.cross(C.row(2));
   const Eigen::Vector3f pOr = p.cross(Or);
-  const std::array<float, std::tuple_size_v<ResidualSums>> terms{p.y() * C(0, 2) - p.z() * C(0, 1),
-                                                                 p.z() * C(0, 0) - p.x() * C(0, 2),
-                                                                 p.x() * C(0, 1) - p.y() * C(0, 0),
-                                                                 p.z() * C(1, 0) - p.x() * C(1, 2),
-                                                                 p.x() * C(1, 1) - p.y() * C(1, 0),
-                                                                 p.x() * C(2, 1) - p.y() * C(2, 0),
-                                                                 C(0, 0),
-                                                                 C(0, 1),
-                                                                 C(0, 2),
-                                                                 C(1, 0),
-                                                                 C(1, 1),
-                                                                 C(1, 2),
-                                                                 C(2, 0),
-                                                                 C(2, 1),
-                                                                 C(2, 2),
-                                                                 i[0],
-                                                                 i[1],
-                                                                 i[2],
-                                                                 i[3],
-                                                                 i[4],
-                                                                 i[5],
-                                                                 -pOr.x(),
-                                                                 -pOr.y(),
-                                                                 -pOr.z(),
-                                                                 -Or.x(),
-                                                                 -Or.y(),
-                                                                 -Or.z()};
+  const std::array<float, ResidualSums::RowsAtCompileTime> terms{
+      xx[0],   xx[1],   xx[2],   yy[1],   yy[2],   zz[2],   C(0, 0), C(0, 1), C(0, 2),
+      C(1, 0), C(1, 1), C(1, 2), C(2, 0), C(2, 1), C(2, 2), i[0],    i[1],    i[2],
+      i[3],    i[4],    i[5],    -pOr[0], -pOr[1], -pOr[2], -Or[0],  -Or[1],  -Or[2]};
   const float w = robust * data_weight;
-  ResidualSums& bin =
-      bins_[static_cast<std::size_t>(one.feature->s * kBins + 0.5F)];  // to the nearest
-  for (std::size_t k = 0; k < terms.size(); ++k) bin[k] += static_cast<double>(w * terms[k]);
+  const auto nearest = static_cast<std::size_t>(one.feature->s * kBins + 0.5F);
+  double* sum = bins_[nearest].data();
+  for (std::size_t k = 0; k < terms.size(); ++k) sum[k] += static_cast<double>(w * terms[k]);
 }
 
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior) {

@@ -68,7 +68,7 @@ struct Solution {
 /// What residuals sum up to, for a pose (rotation, translation): of the symmetric J'OJ the block of
 /// the rotation (xx xy xz yy yz zz), the one beside it row by row, and that of the translation;
 /// then -J'Or.
-using ResidualSums = std::array<double, 6 + 9 + 6 + 6>;
+using ResidualSums = Eigen::Matrix<double, 6 + 9 + 6 + 6, 1>;
 
 /// Aligns features with the maps. Keeps its working memory between calls.
 class Solver {
