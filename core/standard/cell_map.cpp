@@ -38,12 +38,6 @@ Symmetric twice_outer(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return o;
 }
 
-Eigen::Matrix3f matrix_of(const Symmetric& s) {
-  Eigen::Matrix3f m;
-  m << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-  return m;
-}
-
 }  // namespace
 
 CellMap::CellMap(const CellMapConfig& config)
@@ -199,7 +193,7 @@ void CellMap::fit(Cell& cell) const {
   if (sums.count < kMinCount) return;
   cell.mean_m = sums.point / sums.count;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(matrix_of(sums.square / sums.count - outer(cell.mean_m)));
+  solver.computeDirect(matrix_of<float>(sums.square / sums.count - outer(cell.mean_m)));
   const float thin_m = kThin * 3.0F * config_.cell_m;
   const float doubt = config_.noise_m * config_.noise_m + kFewPoints_m * kFewPoints_m / sums.count;
   constexpr float kUpright = 0.7F;  // cosine

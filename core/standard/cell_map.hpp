@@ -11,6 +11,13 @@ namespace lilo::standard {
 /// Symmetric 3x3 matrix: xx xy xz yy yz zz.
 using Symmetric = Eigen::Matrix<float, 6, 1>;
 
+template <typename T>
+Eigen::Matrix<T, 3, 3> matrix_of(const Eigen::Matrix<T, 6, 1>& s) {
+  Eigen::Matrix<T, 3, 3> m;
+  m << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  return m;
+}
+
 /// What the map says about a point near one cell.
 struct Match {
   Eigen::Vector3f from_mean_m;             ///< from the mean of the map points around to the point

@@ -16,8 +16,13 @@ constexpr float kSameSurface = 3.0F;
 // The lasers of one firing look up to 18 degrees apart (HDL-64E). Columns nearer to the front, and
 // those around the scan's first return, where it ends as well, may still get returns.
 constexpr float kSpread_rad = 0.35F;
-// With 64 rings, 512 to 1024 columns give the same errors. Fewer lose thin posts, more cost time.
+// With 64 rings, 512 to 1024 columns give the same errors. Fewer are worse, more cost time.
 constexpr int kMostPixels = 64 * 576;
+
+template <typename Bits>
+bool has(const Bits& bits, std::size_t ring) {
+  return (bits[ring / 64] >> (ring % 64) & 1U) != 0;
+}
 
 float columns_per_rad(int columns) {
   return static_cast<float>(columns) / (2.0F * std::numbers::pi_v<float>);
@@ -138,7 +143,7 @@ void FeatureImage::gather(int column, Gathered& g) const {
   std::copy_n(pixels_of(column), rows, g.pixels.begin());
   g.own = filled_[static_cast<std::size_t>(column)];
   for (std::size_t k = 0; k < rows; ++k) {
-    g.flats_m[k] = (g.own[k / 64] >> (k % 64) & 1U) != 0 ? flat_m(g.pixels[k]) : 0.0F;
+    g.flats_m[k] = has(g.own, k) ? flat_m(g.pixels[k]) : 0.0F;
   }
   Filled have = g.own;
   const int place = place_of(column);
@@ -182,8 +187,7 @@ void FeatureImage::classify_column(int column, std::vector<Feature>& out) const 
     if (ring + 1 < rows && flats_m[k] > 0.0F && flats_m[k + 1] > 0.0F) {
       above = step_between(pixels + ring, flats_m.data() + k, gap_rad(ring));
     }
-    const bool is_own = (gathered.own[k / 64] >> (k % 64) & 1U) != 0;
-    if (is_own) add_feature(pixels, ring, below, above, out);
+    if (has(gathered.own, k)) add_feature(pixels, ring, below, above, out);
     below = above;
   }
 }

@@ -48,21 +48,15 @@ KnotInformation marginal_of_last(const Matrix& H) {
   return H.bottomRightCorner<kKnotSize, kKnotSize>() - cross.transpose() * rest.ldlt().solve(cross);
 }
 
-Eigen::Matrix3d symmetric(const Vector6d& s) {
-  Eigen::Matrix3d m;
-  m << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-  return m;
-}
-
 /// J'OJ and -J'Or of a bin's residuals, by rotation and translation.
 std::pair<Matrix6d, Vector6d> normal_equations(const ResidualSums& sums) {
   Matrix6d H;
-  H.topLeftCorner<3, 3>() = symmetric(sums.head<6>());
+  H.topLeftCorner<3, 3>() = matrix_of<double>(sums.head<6>());
   for (int row = 0; row < 3; ++row) {
     H.block<1, 3>(row, 3) = sums.segment<3>(6 + 3 * row).transpose();
   }
   H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
-  H.bottomRightCorner<3, 3>() = symmetric(sums.segment<6>(15));
+  H.bottomRightCorner<3, 3>() = matrix_of<double>(sums.segment<6>(15));
   return {H, sums.tail<6>()};
 }
 
@@ -158,8 +152,7 @@ void Solver::add_residual(const Asked& one, const Match& match, float data_weigh
   const bool ground = one.feature->kind == Kind::ground;
   const Eigen::Vector3f& r = match.from_mean_m;
   const Symmetric& i = *match.information;
-  Eigen::Matrix3f O;
-  O << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
+  const Eigen::Matrix3f O = matrix_of(i);
   const Eigen::Vector3f Or = O * r;
   const float square = r.dot(Or);
   const float kernel = ground ? config_.ground_kernel : config_.structure_kernel;

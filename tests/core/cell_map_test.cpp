@@ -8,12 +8,6 @@
 namespace lilo::standard {
 namespace {
 
-Eigen::Matrix3f matrix_of(const Symmetric& s) {
-  Eigen::Matrix3f m;
-  m << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-  return m;
-}
-
 class Filled : public testing::Test {
  protected:
   double uniform(double low, double high) {
@@ -109,6 +103,7 @@ TEST_F(Filled, AStripOfGroundSaysNothingOfWhereItEnds) {
   EXPECT_LT(O(0, 0), 1e-3F * O(2, 2));
   EXPECT_LT(O(1, 1), 1e-3F * O(2, 2));
   const Match of_wall = map_.find({-2.9, 0.1, -0.8});  // a rail of that width would say it
+  ASSERT_NE(of_wall.information, nullptr);
   EXPECT_GT(matrix_of(*of_wall.information)(0, 0), 30.0F);
 }
 
