@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,9 @@ enum class Kind : std::uint8_t {
 struct Feature {
   float x_m, y_m, z_m;  ///< sensor frame at the instant of the firing
   float s;              ///< that instant as a part of the scan's duration, in [0, 1]
-  /// To the return of the neighbouring ring on the same surface. Where there is none, as far up as
-  /// the next ring looks: how high a bar is that one ring hits, nobody knows.
+  /// To the nearer of the neighbouring rings' returns on the same surface. Where there is none, as
+  /// far up as the next ring looks: how high a bar is that one ring hits, nobody knows, nor how the
+  /// ground runs where rings are far apart.
   float dx_m, dy_m, dz_m;
   Kind kind;
   std::uint8_t ring;
@@ -67,7 +69,8 @@ class FeatureImage {
   /// Distances from the sensor's axis of a column's pixels; 0: empty.
   using Flats = std::array<float, kMaxRings>;
   /// A column as its own pixels see it. A firing may straddle two columns: where this one got no
-  /// return of a ring, that of the column before or after stands in.
+  /// return of a ring, that of the column before or after stands in if it is below the horizon. Of
+  /// the ground, that is; leaves and rails above hardly ever go on from column to column.
   struct Gathered {
     std::array<Pixel, kMaxRings> pixels;  ///< valid where flats_m > 0
     Flats flats_m;
@@ -76,6 +79,7 @@ class FeatureImage {
   struct Step {
     bool connected = false;  // one surface
     bool steep = false;
+    float length2_m2 = std::numeric_limits<float>::infinity();  // if connected
   };
   void project(std::span<const Return> returns);
   void note(int column);
@@ -85,6 +89,8 @@ class FeatureImage {
   /// Between a ring and the next, which of the highest is the one below.
   [[nodiscard]] float gap_rad(int ring) const;
   void gather(int column, Gathered& gathered) const;
+  /// Of a pixel in a column.
+  void set_reach(const Pixel* pixel, Step below, Step above, Feature& f) const;
   void add_feature(const Pixel* column, int ring, Step below, Step above,
                    std::vector<Feature>& out) const;
   /// From the pixel of a ring to that of the next, both filled.

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -86,6 +87,57 @@ TEST(FeatureImage, FindsTheNextRingInTheColumnBeside) {
     }
     EXPECT_GT(all, 5 * columns) << columns;  // of seven rings
     EXPECT_LE(wrong, 7) << columns << ": more than a column of " << all;
+  }
+}
+
+// A plain, where ring k meets the ground 1.5 m / tan(its elevation) away.
+TEST(FeatureImage, BelievesTheGroundBetweenNeighbouringRingsOnlyUpToTenMetres) {
+  test::Scene plain;
+  plain.planes = {{{0.0, 0.0, 1.0}, -1.5}};
+  const auto flat_of = [](int ring) {
+    return -1.5 / std::tan(static_cast<double>(k16.elevation_rad[static_cast<std::size_t>(ring)]));
+  };
+  std::array<int, 8> count{};
+  standard::FeatureImage image(1024, {});
+  for (const standard::Feature& f : image.build(test::still_scan_of(plain, k16, {}))) {
+    if (f.ring == 7) continue;  // meets the ground 86 m off, three times as far as the next
+    ASSERT_LT(f.ring, 7);
+    ++count[f.ring];
+    const double flat_m = std::hypot(f.x_m, f.y_m);
+    const double reach_flat_m = static_cast<double>(f.x_m * f.dx_m + f.y_m * f.dy_m) / flat_m;
+    if (f.ring == 6) {  // 28.6 m away, the ring below 17.1 m
+      EXPECT_NEAR(f.dz_m, flat_m * 2.0 * std::numbers::pi / 180.0, 1e-3);
+    } else {  // the ring below is nearer; the lowest has only the one above
+      const int nearest = f.ring == 0 ? 1 : f.ring - 1;
+      EXPECT_NEAR(reach_flat_m, flat_of(nearest) - flat_of(f.ring), 0.05) << int{f.ring};
+      EXPECT_NEAR(f.dz_m, 0.0, 1e-3);
+    }
+  }
+  for (int ring = 0; ring < 7; ++ring) EXPECT_EQ(count[static_cast<std::size_t>(ring)], 1024);
+}
+
+// Twigs 20 m away: one in every column, in two rings by turns.
+TEST(FeatureImage, TakesNothingAboveTheHorizonFromTheColumnBeside) {
+  constexpr int kColumns = 360;
+  Scan scan;
+  scan.beams = k16;
+  scan.end_ns = 100'000'000;
+  for (int column = 0; column < kColumns; ++column) {
+    const double azimuth = std::numbers::pi * (1.0 - 2.0 * (column + 0.5) / kColumns);
+    const auto ring = static_cast<std::uint8_t>(11 + column % 2);
+    const double up = std::tan(static_cast<double>(k16.elevation_rad[ring]));
+    scan.returns.push_back({.x_m = static_cast<float>(20.0 * std::cos(azimuth)),
+                            .y_m = static_cast<float>(20.0 * std::sin(azimuth)),
+                            .z_m = static_cast<float>(20.0 * up),
+                            .azimuth_rad = static_cast<float>(azimuth),
+                            .ring = ring});
+  }
+  standard::FeatureImage image(kColumns, {});
+  const std::vector<standard::Feature>& features = image.build(scan);
+  ASSERT_EQ(features.size(), kColumns);
+  for (const standard::Feature& f : features) {
+    EXPECT_EQ(f.kind, standard::Kind::structure);
+    EXPECT_NEAR(f.dz_m, 20.0 * 2.0 * std::numbers::pi / 180.0, 1e-3);  // nobody knows
   }
 }
 
