@@ -187,16 +187,16 @@ void FeatureImage::classify_column(int column, std::vector<Feature>& out) const 
   Gathered gathered;
   gather(column, gathered);
   const Pixel* pixels = gathered.pixels.data();
-  const Flats& flats_m = gathered.flats_m;
-  Step below;
+  const float* flats_m = gathered.flats_m.data();
+  const auto step_from = [&](int ring) {
+    if (ring + 1 >= rows || flats_m[ring] == 0.0F || flats_m[ring + 1] == 0.0F) return Step{};
+    return step_between(pixels + ring, flats_m + ring, gap_rad(ring));
+  };
+  Steps steps{{}, {}, step_from(0), {}};
   for (int ring = 0; ring < rows; ++ring) {
-    Step above;
-    const auto k = static_cast<std::size_t>(ring);
-    if (ring + 1 < rows && flats_m[k] > 0.0F && flats_m[k + 1] > 0.0F) {
-      above = step_between(pixels + ring, flats_m.data() + k, gap_rad(ring));
-    }
-    if (has(gathered.own, k)) add_feature(pixels, ring, below, above, out);
-    below = above;
+    steps.beyond = step_from(ring + 1);
+    if (has(gathered.own, static_cast<std::size_t>(ring))) add_feature(pixels, ring, steps, out);
+    steps = {steps.below, steps.above, steps.beyond, {}};
   }
 }
 
@@ -206,11 +206,11 @@ float FeatureImage::gap_rad(int ring) const {
   return beams_.elevation_rad[lower + 1] - beams_.elevation_rad[lower];
 }
 
-void FeatureImage::add_feature(const Pixel* column, int ring, Step below, Step above,
+void FeatureImage::add_feature(const Pixel* column, int ring, Steps steps,
                                std::vector<Feature>& out) const {
   const Pixel& p = column[ring];
-  const bool flat = (above.connected && !above.steep) || (below.connected && !below.steep);
-  const bool steep = (above.connected && above.steep) || (below.connected && below.steep);
+  const bool flat = steps.above.is_flat() || steps.below.is_flat();
+  const bool steep = steps.above.steep || steps.below.steep;
   if (flat && steep) return;          // a kerb or the foot of a wall: neither
   if (flat && p.z_m >= 0.0F) return;  // a roof or a canopy seen from below
   Feature f{p.x_m,
@@ -222,7 +222,10 @@ void FeatureImage::add_feature(const Pixel* column, int ring, Step below, Step a
             0.0F,
             flat ? Kind::ground : Kind::structure,
             static_cast<std::uint8_t>(ring)};
-  set_reach(column + ring, below, above, f);
+  // From the ground to the foot of a wall goes no surface.
+  if (flat && steps.beyond.steep) steps.above = {};
+  if (flat && steps.before.steep) steps.below = {};
+  set_reach(column + ring, steps.below, steps.above, f);
   out.push_back(f);
 }
 

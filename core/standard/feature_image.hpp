@@ -77,9 +77,14 @@ class FeatureImage {
     Filled own;
   };
   struct Step {
-    bool connected = false;  // one surface
-    bool steep = false;
+    bool connected = false;                                     // one surface
+    bool steep = false;                                         // and connected
     float length2_m2 = std::numeric_limits<float>::infinity();  // if connected
+    [[nodiscard]] bool is_flat() const { return connected && !steep; }
+  };
+  /// Around a ring: from the second below to the one below, from there, to the next, and from that.
+  struct Steps {
+    Step before, below, above, beyond;
   };
   void project(std::span<const Return> returns);
   void note(int column);
@@ -91,8 +96,7 @@ class FeatureImage {
   void gather(int column, Gathered& gathered) const;
   /// Of a pixel in a column.
   void set_reach(const Pixel* pixel, Step below, Step above, Feature& f) const;
-  void add_feature(const Pixel* column, int ring, Step below, Step above,
-                   std::vector<Feature>& out) const;
+  void add_feature(const Pixel* column, int ring, Steps steps, std::vector<Feature>& out) const;
   /// From the pixel of a ring to that of the next, both filled.
   static Step step_between(const Pixel* lower, const float* flats_m, float gap_rad);
 

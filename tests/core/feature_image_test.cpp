@@ -116,6 +116,25 @@ TEST(FeatureImage, BelievesTheGroundBetweenNeighbouringRingsOnlyUpToTenMetres) {
   for (int ring = 0; ring < 7; ++ring) EXPECT_EQ(count[static_cast<std::size_t>(ring)], 1024);
 }
 
+// Floor and a wall, where one ring meets the floor just before the wall and the next one the wall
+// just above the floor: by their slope alone the two might lie on a ramp.
+TEST(FeatureImage, MakesNoRampOfFloorAndWall) {
+  test::Scene hall;
+  hall.planes = {{{0.0, 0.0, 1.0}, -0.8}, {{-1.0, 0.0, 0.0}, -9.6}, {{1.0, 0.0, 0.0}, -3.05}};
+  standard::FeatureImage image(1024, {});
+  int ground = 0;
+  for (const standard::Feature& f : image.build(test::still_scan_of(hall, k16, {}))) {
+    if (f.kind != standard::Kind::ground) continue;
+    const Eigen::Vector3d p(f.x_m, f.y_m, f.z_m), reach(f.dx_m, f.dy_m, f.dz_m);
+    EXPECT_NEAR(p.z(), -0.8, 1e-3) << int{f.ring};
+    const bool along_floor = std::abs(reach.z()) < 1e-3;
+    const bool nobody_knows = std::abs(reach.normalized().dot(p.normalized())) < 1e-3;
+    EXPECT_TRUE(along_floor || nobody_knows) << int{f.ring} << " " << p.transpose();
+    ++ground;
+  }
+  EXPECT_GT(ground, 4000);
+}
+
 // Twigs 20 m away: one in every column, in two rings by turns.
 TEST(FeatureImage, TakesNothingAboveTheHorizonFromTheColumnBeside) {
   constexpr int kColumns = 360;
