@@ -27,8 +27,9 @@ struct Match {
 struct CellMapConfig {
   float cell_m = 0.5F;
   float noise_m = 0.02F;  ///< 1 sigma of a return across a surface
-  /// Ground: informs of its height and slope only. How far it was seen, a strip before a wall or
-  /// one ring, moves with the sensor and would hold it where it is.
+  /// Ground: informs of its height and slope only, and not at all where no more than a strip of it
+  /// was seen. Where it ends, before a wall or at one ring, moves with the sensor and would hold it
+  /// where it is; and of a strip, the foot of the wall would make a slope.
   bool level = false;
   int capacity = 100000;  ///< cells; beyond it new ones are refused and counted
   /// Points a cell remembers; older ones fade. What is seen of a thing moves as the sensor passes

@@ -89,22 +89,35 @@ TEST_F(Filled, ASingleRingOnTheGroundSaysNothingAlongItsBeam) {
 
 // Before a wall the lowest ring sees a strip of ground, at the same distance wherever the sensor
 // is.
-TEST_F(Filled, AStripOfGroundSaysNothingOfWhereItEnds) {
+TEST_F(Filled, AStripOfGroundSaysNothing) {
   CellMap ground({.level = true});
   for (int k = 0; k < 2000; ++k) {
-    const Eigen::Vector3d p(-2.9 + uniform(-0.08, 0.08), uniform(-2.0, 2.0), -0.8);
+    const double x_m = -2.9 + uniform(-0.08, 0.08);
+    const Eigen::Vector3d p(x_m, uniform(-2.0, 2.0),
+                            -0.8 - 0.3 * (x_m + 2.9));  // to the wall's foot
     map_.insert(p, no_reach_);
     ground.insert(p, no_reach_);
   }
-  const Match match = ground.find({-2.9, 0.1, -0.8});
+  EXPECT_EQ(ground.find({-2.9, 0.1, -0.8}).information, nullptr);
+  const Match of_rail = map_.find({-2.9, 0.1, -0.8});  // a rail of that width says where it is
+  ASSERT_NE(of_rail.information, nullptr);
+  EXPECT_GT(matrix_of(*of_rail.information)(0, 0), 30.0F);
+}
+
+TEST_F(Filled, GroundSaysHowHighItIsAndHowItLeans) {
+  CellMap ground({.level = true});
+  for (int k = 0; k < 2000; ++k) {
+    const double x_m = uniform(-1.0, 1.0);
+    ground.insert({x_m, uniform(-1.0, 1.0), -0.8 + 0.2 * x_m}, no_reach_);
+    ground.insert({6.0, uniform(-1.0, 1.0), uniform(-1.0, 1.0)}, no_reach_);  // passes for ground
+  }
+  const Match match = ground.find({0.1, 0.1, -0.8});
   ASSERT_NE(match.information, nullptr);
   const Eigen::Matrix3f O = matrix_of(*match.information);
   EXPECT_GT(O(2, 2), 1000.0F);
-  EXPECT_LT(O(0, 0), 1e-3F * O(2, 2));
+  EXPECT_NEAR(O(0, 2) / O(2, 2), -0.2F, 0.02F);
   EXPECT_LT(O(1, 1), 1e-3F * O(2, 2));
-  const Match of_wall = map_.find({-2.9, 0.1, -0.8});  // a rail of that width would say it
-  ASSERT_NE(of_wall.information, nullptr);
-  EXPECT_GT(matrix_of(*of_wall.information)(0, 0), 30.0F);
+  EXPECT_EQ(ground.find({6.0, 0.1, 0.1}).information, nullptr);
 }
 
 TEST_F(Filled, KnowsNothingWhereNothingWasSeen) {
