@@ -33,7 +33,8 @@ bool Selection::take(std::uint64_t voxel) {
 }
 
 const std::vector<Feature>& Selection::choose(const std::vector<Feature>& all) {
-  // Too small a voxel fills the goal before the turn is over, as after a scan that saw little.
+  // Too small a voxel fills the goal before the turn is over, as after a scan that saw little. Too
+  // large a one leaves little of what there is, as in the first scan of a narrow place.
   constexpr int kMostPasses = 8;
   for (int pass = 0; pass < kMostPasses && !take_evenly(all); ++pass) {
   }
@@ -43,12 +44,13 @@ const std::vector<Feature>& Selection::choose(const std::vector<Feature>& all) {
 bool Selection::take_evenly(const std::vector<Feature>& all) {
   std::fill(taken_.begin(), taken_.end(), 0);
   chosen_.clear();
-  std::array<int, kKinds> count{};
-  bool complete = true;
+  std::array<int, kKinds> count{}, offered{};
+  bool done = true;
   for (const Feature& f : all) {
     const auto kind = static_cast<std::size_t>(f.kind);
+    ++offered[kind];
     if (count[kind] >= 2 * goal_[kind]) {
-      complete = false;
+      done = false;
       continue;
     }
     if (!take(voxel_of(f))) continue;
@@ -58,9 +60,12 @@ bool Selection::take_evenly(const std::vector<Feature>& all) {
   for (std::size_t k = 0; k < kKinds; ++k) {
     // On surfaces the number goes with the inverse square of the voxel; 0.35 instead of 0.5 damps.
     const float ratio = static_cast<float>(std::max(count[k], 1)) / static_cast<float>(goal_[k]);
+    const float before_m = voxel_m_[k];
     voxel_m_[k] = std::clamp(voxel_m_[k] * std::pow(ratio, 0.35F), 0.05F, 5.0F);
+    const bool few = 2 * count[k] < std::min(goal_[k], offered[k]);
+    if (few && voxel_m_[k] < before_m) done = false;
   }
-  return complete;
+  return done;
 }
 
 void thin_out(const std::vector<Feature>& all, std::size_t most, std::vector<Feature>& fewer) {

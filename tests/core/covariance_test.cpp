@@ -72,13 +72,13 @@ TEST(Covariance, IsOfTheRightSize) {
 TEST(Covariance, GrowsWithTheWay) {
   test::Scene road;
   road.planes = {{{0.0, 0.0, 1.0}, -1.8}};
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < 55; ++k) {
     const double along_m = -50.0 + 8.0 * k + 2.0 * std::sin(2.0 * k);
     road.poles.push_back({along_m, k % 2 == 0 ? 9.0 : -7.0, 0.25, 3.0});
   }
   Odometry odometry{OdometryConfig{}};
   Matrix6d early = Matrix6d::Zero(), late = early;
-  for (int k = 0; k < 100; ++k) {
+  for (int k = 0; k < 200; ++k) {
     const Scan scan = test::scan_of(
         road, test::even_beams(16, -15.0, 15.0), 900,
         [&](double s) {

@@ -57,5 +57,27 @@ TEST(ThinOut, TakesAllOfFew) {
   EXPECT_EQ(fewer.size(), 40U);
 }
 
+// The first scan of a corridor 2 m wide, 6 m of it: 5 cm from return to return.
+TEST(Selection, TakesEnoughOfANarrowPlaceAtOnce) {
+  std::vector<Feature> all;
+  for (int k = 0; k < 8000; ++k) {
+    Feature f{};
+    f.x_m = 0.05F * static_cast<float>(k % 120);
+    f.y_m = k % 2 == 0 ? -1.0F : 1.0F;
+    f.z_m = 0.05F * static_cast<float>(k / 120 % 30);
+    f.kind = Kind::structure;
+    all.push_back(f);
+  }
+  Selection selection(900, 1100);
+  EXPECT_GE(selection.choose(all).size(), 550U);
+}
+
+TEST(Selection, TakesWhatThereIs) {
+  std::vector<Feature> few(40);
+  for (std::size_t k = 0; k < few.size(); ++k) few[k].x_m = static_cast<float>(2 * k);
+  Selection selection(900, 1100);
+  EXPECT_EQ(selection.choose(few).size(), few.size());
+}
+
 }  // namespace
 }  // namespace lilo::standard
