@@ -155,7 +155,7 @@ TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
       solution.inliers < kMinWeight * matched) {
     return TrackingStatus::lost;
   }
-  if (seen_count_ > 0) return TrackingStatus::initializing;  // or so it may be
+  if (seen_count_ > 0 && !stands_) return TrackingStatus::initializing;  // or so it may be
   return scan.complete && solution.converged ? TrackingStatus::tracking : TrackingStatus::degraded;
 }
 
@@ -286,7 +286,7 @@ Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
   e.T_odom_sensor = T_odom_start_ * T_odom_sensor_;
   e.twist = twist_;
   // Before the start is decided, nothing is lost yet.
-  const bool starting = status_ == TrackingStatus::lost && seen_count_ > 0;
+  const bool starting = status_ == TrackingStatus::lost && seen_count_ > 0 && !stands_;
   e.status = starting ? TrackingStatus::initializing : status_;
   e.ground_count = static_cast<int>(std::count_if(
       chosen.begin(), chosen.end(), [](const Feature& f) { return f.kind == Kind::ground; }));

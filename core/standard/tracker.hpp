@@ -94,6 +94,7 @@ class Tracker {
   Start best_start(const Twist& tracked);
   void rehearse(Start start);
   void decide();
+  void doubt_standing();
   static void note_track(Seen& seen, const Pose& T_begin, const Pose& T_end);
   void note_prediction(Seen& seen) const;
   void remember(const std::vector<Feature>& all, const std::vector<Feature>& chosen);
@@ -130,6 +131,8 @@ class Tracker {
   std::size_t seen_count_ = 0;
   int cells_alone_ = 0;  // that the first scans take up, each for itself, all together
   bool start_is_clear_ = false;
+  bool stands_ = false;  // when switched on, or so it seemed
+  Twist assumed_twist_;  // at the start
   std::vector<Look> looks_;
 };
 

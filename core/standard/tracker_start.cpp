@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kStanding_mps = 0.5;  // a robot that is switched on mostly stands
 constexpr double kMoving_mps = 1.0;
+constexpr double kNearer_mps = 0.25;                    // to the motion tracked so far
+constexpr double kApart_mps = 0.5, kApart_radps = 0.1;  // not what was tracked
 constexpr double kOther_mps = 3.0, kOther_radps = 0.5;  // motions nearer to each other are the same
 constexpr double kClearly = 2.0, kProbably = 1.0;       // sigmas
 
@@ -43,7 +45,12 @@ void Tracker::remember(const std::vector<Feature>& all, const std::vector<Featur
   footprint_.clear();
   footprint_.add(seen.outline, {}, {});
   cells_alone_ = footprint_.cells() + (seen_count_ == 1 ? 0 : cells_alone_);
-  if (seen_count_ > 2) decide();
+  if (seen_count_ <= 2) return;
+  if (stands_) {
+    doubt_standing();
+  } else {
+    decide();
+  }
 }
 
 /// Gives the map up and begins another where the prediction ends: wherever the sensor is now, it is
@@ -127,7 +134,8 @@ Solution Tracker::start() {
   Solution solution = refine(start);
   start_is_clear_ = start.is_clear;
   // Who was switched on mostly stands; where a map was given up, more scans must tell.
-  if (start.is_clear && !start.moves && restarts_ == 0) seen_count_ = 0;
+  stands_ = start.is_clear && !start.moves && restarts_ == 0;
+  assumed_twist_ = start.twist;
   return solution;
 }
 
@@ -263,7 +271,6 @@ Twist Tracker::twist_so_far() const {
 /// The motion that all scans so far speak for: near the track, once it is clear that there is none
 /// like it elsewhere.
 Tracker::Start Tracker::best_start(const Twist& tracked) {
-  constexpr double kNearer_mps = 0.25;
   if (start_is_clear_ && status_ != TrackingStatus::lost) {
     Start start;
     start.twist = look_around(tracked).twist;
@@ -276,10 +283,21 @@ Tracker::Start Tracker::best_start(const Twist& tracked) {
   return start;
 }
 
+/// Who was taken to stand may have been driving off slowly, where a step of a scan is less than the
+/// scans can tell: a map so begun is smeared by it, and holds the sensor back later.
+void Tracker::doubt_standing() {
+  constexpr std::size_t kEnough = 4;  // scans
+  if (seen_count_ < kEnough) return;
+  const Twist tracked = twist_so_far();
+  if (differ(tracked, assumed_twist_, kApart_mps, kApart_radps)) {
+    rehearse({tracked, tracked.linear_mps, kNearer_mps});
+  }
+  seen_count_ = 0;
+}
+
 /// Puts the tracker on another start where all scans so far speak for it, and makes an end of it
 /// when they are enough.
 void Tracker::decide() {
-  constexpr double kApart_mps = 0.5, kApart_radps = 0.1;
   const Twist tracked = twist_so_far();
   const Start other = best_start(tracked);
   if (differ(other.twist, tracked, kApart_mps, kApart_radps) &&

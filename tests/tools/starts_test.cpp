@@ -25,6 +25,7 @@ struct Drive {
   double speed_mps = 0.0;
   std::size_t every = 20;  ///< scans from start to start
   sim::Sensor sensor = sim::Sensor::vlp16;
+  std::uint64_t seed = 3;
 };
 std::ostream& operator<<(std::ostream& out, const Drive& drive) { return out << drive.name; }
 
@@ -36,7 +37,7 @@ class Starts : public testing::TestWithParam<Drive> {
     sim::SimOptions options;
     options.world = drive.world;
     options.sensor.sensor = drive.sensor;
-    options.seed = 3;
+    options.seed = drive.seed;
     options.motion.speed_mps = drive.speed_mps;
     options.motion.start_in_motion = true;
     options.motion.duration_s = 12.0;
@@ -111,8 +112,9 @@ TEST_P(Starts, AreTrueToWhatTheySay) {
 INSTANTIATE_TEST_SUITE_P(
     Simulated, Starts,
     testing::Values(Drive{"sim_vlp16_park"}, Drive{"sim_vlp16_town"},
-                    Drive{"corridor", "corridor", 1.0, 10}, Drive{"field", "field", 5.0, 10},
-                    Drive{"highway_10_mps", "highway", 10.0, 10},
+                    Drive{"corridor", "corridor", 1.0, 10},
+                    Drive{"corridor_end", "corridor", 1.0, 10, sim::Sensor::vlp16, 21},
+                    Drive{"field", "field", 5.0, 10}, Drive{"highway_10_mps", "highway", 10.0, 10},
                     Drive{"highway_25_mps", "highway", 25.0, 10},
                     Drive{"country", "country", 14.0, 10},
                     Drive{"hdl64_park", "park", 1.5, 20, sim::Sensor::hdl64_s2}),
