@@ -62,6 +62,7 @@ void FeatureImage::begin(const BeamTable& beams) {
   margin_ = static_cast<int>(std::ceil(kSpread_rad * columns_per_rad(columns_)));
   const auto size = static_cast<std::size_t>(beams.ring_count) * static_cast<std::size_t>(columns_);
   pixels_.resize(size);
+  steps_.fill({});
   filled_.assign(static_cast<std::size_t>(columns_), Filled{});
   for (std::vector<Feature>* features : {&features_, &last_features_}) {
     if (features->capacity() < size) features->resize(size);  // touches it all
@@ -179,24 +180,25 @@ FeatureImage::Step FeatureImage::step_between(const Pixel* lower, const float* f
   const float reach_m2 = kSameSurface * across_m * flats_m[0];
   const float length2_m2 = dd * dd + dz * dz;
   if (!(length2_m2 * grazing_m * grazing_m < reach_m2 * reach_m2)) return {};
-  return {true, steep, length2_m2};
+  return {length2_m2, true, steep};
 }
 
-void FeatureImage::classify_column(int column, std::vector<Feature>& out) const {
+void FeatureImage::classify_column(int column, std::vector<Feature>& out) {
   const int rows = beams_.ring_count;
   Gathered gathered;
   gather(column, gathered);
   const Pixel* pixels = gathered.pixels.data();
   const float* flats_m = gathered.flats_m.data();
-  const auto step_from = [&](int ring) {
-    if (ring + 1 >= rows || flats_m[ring] == 0.0F || flats_m[ring + 1] == 0.0F) return Step{};
-    return step_between(pixels + ring, flats_m + ring, gap_rad(ring));
-  };
-  Steps steps{{}, {}, step_from(0), {}};
+  Step* const step_to = steps_.data() + 1;  // from the ring below; to the lowest none
+  for (int ring = 0; ring + 1 < rows; ++ring) {
+    step_to[ring + 1] = flats_m[ring] > 0.0F && flats_m[ring + 1] > 0.0F
+                            ? step_between(pixels + ring, flats_m + ring, gap_rad(ring))
+                            : Step{};
+  }
   for (int ring = 0; ring < rows; ++ring) {
-    steps.beyond = step_from(ring + 1);
-    if (has(gathered.own, static_cast<std::size_t>(ring))) add_feature(pixels, ring, steps, out);
-    steps = {steps.below, steps.above, steps.beyond, {}};
+    if (has(gathered.own, static_cast<std::size_t>(ring))) {
+      add_feature(pixels, ring, step_to + ring, out);
+    }
   }
 }
 
@@ -206,11 +208,12 @@ float FeatureImage::gap_rad(int ring) const {
   return beams_.elevation_rad[lower + 1] - beams_.elevation_rad[lower];
 }
 
-void FeatureImage::add_feature(const Pixel* column, int ring, Steps steps,
+void FeatureImage::add_feature(const Pixel* column, int ring, const Step* steps,
                                std::vector<Feature>& out) const {
+  const Step before = steps[-1], below = steps[0], above = steps[1], beyond = steps[2];
   const Pixel& p = column[ring];
-  const bool flat = steps.above.is_flat() || steps.below.is_flat();
-  const bool steep = steps.above.steep || steps.below.steep;
+  const bool flat = above.is_flat() || below.is_flat();
+  const bool steep = above.steep || below.steep;
   if (flat && steep) return;          // a kerb or the foot of a wall: neither
   if (flat && p.z_m >= 0.0F) return;  // a roof or a canopy seen from below
   Feature f{p.x_m,
@@ -223,15 +226,15 @@ void FeatureImage::add_feature(const Pixel* column, int ring, Steps steps,
             flat ? Kind::ground : Kind::structure,
             static_cast<std::uint8_t>(ring)};
   // From the ground to the foot of a wall goes no surface.
-  if (flat && steps.beyond.steep) steps.above = {};
-  if (flat && steps.before.steep) steps.below = {};
-  set_reach(column + ring, steps.below, steps.above, f);
+  const Step to_lower = flat && before.steep ? Step{} : below;
+  const Step to_upper = flat && beyond.steep ? Step{} : above;
+  set_reach(column + ring, to_lower, to_upper, f);
   out.push_back(f);
 }
 
-void FeatureImage::set_reach(const Pixel* pixel, Step below, Step above, Feature& f) const {
-  const bool up = above.length2_m2 < below.length2_m2;
-  if ((up ? above : below).length2_m2 < kFarApart_m * kFarApart_m) {
+void FeatureImage::set_reach(const Pixel* pixel, Step to_lower, Step to_upper, Feature& f) const {
+  const bool up = to_upper.length2_m2 < to_lower.length2_m2;
+  if ((up ? to_upper : to_lower).length2_m2 < kFarApart_m * kFarApart_m) {
     const Pixel& neighbour = up ? pixel[1] : pixel[-1];
     f.dx_m = neighbour.x_m - f.x_m;
     f.dy_m = neighbour.y_m - f.y_m;

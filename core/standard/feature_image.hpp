@@ -76,27 +76,26 @@ class FeatureImage {
     Flats flats_m;
     Filled own;
   };
+  /// From a ring to the next.
   struct Step {
+    float length2_m2 = std::numeric_limits<float>::infinity();  // if connected
     bool connected = false;                                     // one surface
     bool steep = false;                                         // and connected
-    float length2_m2 = std::numeric_limits<float>::infinity();  // if connected
     [[nodiscard]] bool is_flat() const { return connected && !steep; }
-  };
-  /// Around a ring: from the second below to the one below, from there, to the next, and from that.
-  struct Steps {
-    Step before, below, above, beyond;
   };
   void project(std::span<const Return> returns);
   void note(int column);
   [[nodiscard]] int place_of(int column) const;
   void classify_until(int place);
-  void classify_column(int column, std::vector<Feature>& out) const;
+  void classify_column(int column, std::vector<Feature>& out);
   /// Between a ring and the next, which of the highest is the one below.
   [[nodiscard]] float gap_rad(int ring) const;
   void gather(int column, Gathered& gathered) const;
   /// Of a pixel in a column.
-  void set_reach(const Pixel* pixel, Step below, Step above, Feature& f) const;
-  void add_feature(const Pixel* column, int ring, Steps steps, std::vector<Feature>& out) const;
+  void set_reach(const Pixel* pixel, Step to_lower, Step to_upper, Feature& f) const;
+  /// `steps`: to the ring, after the one to the ring below, before the two above.
+  void add_feature(const Pixel* column, int ring, const Step* steps,
+                   std::vector<Feature>& out) const;
   /// From the pixel of a ring to that of the next, both filled.
   static Step step_between(const Pixel* lower, const float* flats_m, float gap_rad);
 
@@ -107,6 +106,8 @@ class FeatureImage {
   BeamTable beams_;
   std::vector<Pixel> pixels_;   // valid where filled
   std::vector<Filled> filled_;  // of every column; apart, because most returns only ask this
+  /// Of the column in hand, each to a ring from the one below, and room around.
+  std::array<Step, kMaxRings + 3> steps_;
   std::vector<Feature> features_;
   std::vector<Feature> last_features_;  // of columns to the right of straight behind
 
