@@ -180,7 +180,7 @@ FeatureImage::Step FeatureImage::step_between(const Pixel* lower, const float* f
   const float reach_m2 = kSameSurface * across_m * flats_m[0];
   const float length2_m2 = dd * dd + dz * dz;
   if (!(length2_m2 * grazing_m * grazing_m < reach_m2 * reach_m2)) return {};
-  return {length2_m2, true, steep};
+  return {length2_m2, !steep, steep};
 }
 
 void FeatureImage::classify_column(int column, std::vector<Feature>& out) {
@@ -212,7 +212,7 @@ void FeatureImage::add_feature(const Pixel* column, int ring, const Step* steps,
                                std::vector<Feature>& out) const {
   const Step before = steps[-1], below = steps[0], above = steps[1], beyond = steps[2];
   const Pixel& p = column[ring];
-  const bool flat = above.is_flat() || below.is_flat();
+  const bool flat = above.flat || below.flat;
   const bool steep = above.steep || below.steep;
   if (flat && steep) return;          // a kerb or the foot of a wall: neither
   if (flat && p.z_m >= 0.0F) return;  // a roof or a canopy seen from below

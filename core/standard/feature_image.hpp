@@ -76,12 +76,10 @@ class FeatureImage {
     Flats flats_m;
     Filled own;
   };
-  /// From a ring to the next.
+  /// From a ring to the next, if both are on one surface; else neither flat nor steep.
   struct Step {
-    float length2_m2 = std::numeric_limits<float>::infinity();  // if connected
-    bool connected = false;                                     // one surface
-    bool steep = false;                                         // and connected
-    [[nodiscard]] bool is_flat() const { return connected && !steep; }
+    float length2_m2 = std::numeric_limits<float>::infinity();
+    bool flat = false, steep = false;
   };
   void project(std::span<const Return> returns);
   void note(int column);
