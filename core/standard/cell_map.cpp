@@ -196,11 +196,13 @@ void CellMap::fit(Cell& cell) const {
   solver.computeDirect(matrix_of<float>(sums.square / sums.count - outer(cell.mean_m)));
   const float thin_m = kThin * 3.0F * config_.cell_m;
   const float doubt = config_.noise_m * config_.noise_m + kFewPoints_m * kFewPoints_m / sums.count;
-  // A strip of ground may lean any way about its length.
-  if (config_.level && solver.eigenvalues()[1] < thin_m * thin_m) return;
+  // Thin in two directions, a strip of ground may lean any way about its length.
   constexpr float kUpright = 0.7F;  // cosine
+  if (config_.level && (solver.eigenvalues()[1] < thin_m * thin_m ||
+                        std::abs(solver.eigenvectors()(2, 0)) < kUpright)) {
+    return;
+  }
   for (int k = 0; k < 3; ++k) {
-    if (config_.level && std::abs(solver.eigenvectors()(2, k)) < kUpright) continue;
     const float variance = std::max(solver.eigenvalues()[k], 0.0F) + doubt;
     const float weight = std::max(0.0F, 1.0F / variance - 1.0F / (thin_m * thin_m));
     cell.information += weight * outer(solver.eigenvectors().col(k));
