@@ -18,6 +18,21 @@ namespace {
 
 const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
 
+/// The middle of a column of an image so many wide.
+double azimuth_of(int column, int columns) {
+  return std::numbers::pi * (1.0 - 2.0 * (column + 0.5) / columns);
+}
+
+/// Where a ring meets what stands so far away.
+Return return_at(const BeamTable& beams, std::uint8_t ring, double azimuth_rad, double flat_m) {
+  const double up = std::tan(static_cast<double>(beams.elevation_rad[ring]));
+  return {.x_m = static_cast<float>(flat_m * std::cos(azimuth_rad)),
+          .y_m = static_cast<float>(flat_m * std::sin(azimuth_rad)),
+          .z_m = static_cast<float>(flat_m * up),
+          .azimuth_rad = static_cast<float>(azimuth_rad),
+          .ring = ring};
+}
+
 TEST(FeatureImage, TellsGroundFromWalls) {
   const test::Scene scene = test::yard();
   const Scan scan = test::still_scan_of(scene, k16, {});
@@ -43,12 +58,8 @@ TEST(FeatureImage, WhatOneRingHitsMayBeAsHighAsTheNextOneLooks) {
   standard::CellMap map({.cell_m = 0.5F});
   standard::FeatureImage image(1024, {});
   for (int k = -10; k <= 10; ++k) {
-    const double azimuth = 0.006 * k, flat_m = 30.0 / std::cos(azimuth);
-    scan.returns.push_back({.x_m = 30.0F,
-                            .y_m = static_cast<float>(flat_m * std::sin(azimuth)),
-                            .z_m = static_cast<float>(flat_m * std::tan(w)),
-                            .azimuth_rad = static_cast<float>(azimuth),
-                            .ring = 9});
+    const double azimuth = 0.006 * k;
+    scan.returns.push_back(return_at(k16, 9, azimuth, 30.0 / std::cos(azimuth)));
   }
   for (const standard::Feature& f : image.build(scan)) {
     const Eigen::Vector3d p(f.x_m, f.y_m, f.z_m), up(f.dx_m, f.dy_m, f.dz_m);
@@ -142,14 +153,8 @@ TEST(FeatureImage, TakesNothingAboveTheHorizonFromTheColumnBeside) {
   scan.beams = k16;
   scan.end_ns = 100'000'000;
   for (int column = 0; column < kColumns; ++column) {
-    const double azimuth = std::numbers::pi * (1.0 - 2.0 * (column + 0.5) / kColumns);
     const auto ring = static_cast<std::uint8_t>(11 + column % 2);
-    const double up = std::tan(static_cast<double>(k16.elevation_rad[ring]));
-    scan.returns.push_back({.x_m = static_cast<float>(20.0 * std::cos(azimuth)),
-                            .y_m = static_cast<float>(20.0 * std::sin(azimuth)),
-                            .z_m = static_cast<float>(20.0 * up),
-                            .azimuth_rad = static_cast<float>(azimuth),
-                            .ring = ring});
+    scan.returns.push_back(return_at(k16, ring, azimuth_of(column, kColumns), 20.0));
   }
   standard::FeatureImage image(kColumns, {});
   const std::vector<standard::Feature>& features = image.build(scan);
@@ -166,13 +171,8 @@ TEST(FeatureImage, WaitsForTheColumnBeside) {
   constexpr int kColumns = 360;
   const BeamTable beams = test::even_beams(2, -15.0, -13.0);
   const auto ground = [&](int column, std::uint8_t ring) {
-    const double azimuth = std::numbers::pi * (1.0 - 2.0 * (column + 0.5) / kColumns);
     const double flat_m = 1.5 / std::tan(static_cast<double>(-beams.elevation_rad[ring]));
-    return Return{.x_m = static_cast<float>(flat_m * std::cos(azimuth)),
-                  .y_m = static_cast<float>(flat_m * std::sin(azimuth)),
-                  .z_m = -1.5F,
-                  .azimuth_rad = static_cast<float>(azimuth),
-                  .ring = ring};
+    return return_at(beams, ring, azimuth_of(column, kColumns), flat_m);
   };
   for (int seen = 60; seen <= 100; ++seen) {
     Scan scan;
