@@ -89,6 +89,8 @@ TEST(Covariance, GrowsWithTheWay) {
     if (k == 30) early = late;
   }
   for (int k = 0; k < 6; ++k) EXPECT_GT(late(k, k), early(k, k)) << k;
+  // Errors of heading move aside what lies ahead: by the way squared, and more as they add up.
+  EXPECT_GT(late(1, 1), 20.0 * early(1, 1));
 }
 
 TEST(Drift, AnErrorOfHeadingMovesAsideWhatLiesAhead) {
