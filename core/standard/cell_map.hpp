@@ -63,17 +63,17 @@ class CellMap {
   }
 
   /// The distribution around a point. Fits are cached: a young cell is fitted again after every
-  /// end_keyframe(), an older one after every sixth.
+  /// end_keyframe(), an older one at every sixth at most, and the older the less often.
   Match find(const Eigen::Vector3d& point_m) { return match(cell_at(place_of(point_m)), point_m); }
 
   /// find() and insert() in steps. Each but the last asks the memory for what the next one reads;
   /// who takes them for many points in turn does not wait for it.
   [[nodiscard]] Place place_of(const Eigen::Vector3d& point_m) const;
   [[nodiscard]] std::int32_t cell_at(const Place& place) const;
-  Match match(std::int32_t cell, const Eigen::Vector3d& point_m);
+  Match match(std::int32_t at, const Eigen::Vector3d& point_m);
   /// The cell there, made if missing.
   std::int32_t open(const Place& place);
-  void add(std::int32_t cell, const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m);
+  void add(std::int32_t at, const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m);
 
   void end_keyframe() { ++keyframe_; }
 

@@ -172,8 +172,8 @@ void Solver::add_residual(const Asked& one, const Match& match, float data_weigh
       C(1, 0), C(1, 1), C(1, 2), C(2, 0), C(2, 1), C(2, 2), i[0],    i[1],    i[2],
       i[3],    i[4],    i[5],    -pOr[0], -pOr[1], -pOr[2], -Or[0],  -Or[1],  -Or[2]};
   const float w = robust * data_weight;
-  const auto nearest = static_cast<std::size_t>(one.feature->s * kBins + 0.5F);
-  double* sum = bins_[nearest].data();
+  const float and_half = one.feature->s * kBins + 0.5F;  // the nearest, without a call
+  double* sum = bins_[static_cast<std::size_t>(and_half)].data();
   for (std::size_t k = 0; k < terms.size(); ++k) sum[k] += static_cast<double>(w * terms[k]);
 }
 

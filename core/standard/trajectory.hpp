@@ -69,7 +69,8 @@ struct Sampled {
            (static_cast<double>(s) - static_cast<double>(k) / kInstants) * velocity[k];
   }
   static std::size_t instant_of(float s) {
-    return static_cast<std::size_t>(s * kInstants + 0.5F);  // lround() is a call
+    const float and_half = s * kInstants + 0.5F;  // lround() is a call
+    return static_cast<std::size_t>(and_half);
   }
 };
 void sample(const Trajectory& trajectory, Sampled& sampled);

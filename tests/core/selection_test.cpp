@@ -64,7 +64,8 @@ TEST(Selection, TakesEnoughOfANarrowPlaceAtOnce) {
     Feature f{};
     f.x_m = 0.05F * static_cast<float>(k % 120);
     f.y_m = k % 2 == 0 ? -1.0F : 1.0F;
-    f.z_m = 0.05F * static_cast<float>(k / 120 % 30);
+    const int row = k / 120;
+    f.z_m = 0.05F * static_cast<float>(row % 30);
     f.kind = Kind::structure;
     all.push_back(f);
   }
