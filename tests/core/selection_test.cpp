@@ -38,7 +38,8 @@ TEST(ThinOut, LeavesNoRingAndNoDirectionOut) {
       last[f.ring] = column;
       ++count[f.ring];
     }
-    for (const int n : count) EXPECT_NEAR(n, kColumns / step, 1) << "every " << step;
+    const int each = kColumns / step;
+    for (const int n : count) EXPECT_NEAR(n, each, 1) << "every " << step;
   }
 }
 
@@ -64,8 +65,7 @@ TEST(Selection, TakesEnoughOfANarrowPlaceAtOnce) {
     Feature f{};
     f.x_m = 0.05F * static_cast<float>(k % 120);
     f.y_m = k % 2 == 0 ? -1.0F : 1.0F;
-    const int row = k / 120;
-    f.z_m = 0.05F * static_cast<float>(row % 30);
+    f.z_m = 0.05F * static_cast<float>(k / 120 % 30);
     f.kind = Kind::structure;
     all.push_back(f);
   }
