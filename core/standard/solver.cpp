@@ -10,41 +10,11 @@
 namespace lilo::standard {
 namespace {
 
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxUnknowns, kMaxUnknowns>;
-
-/// d(k+1) = Phi d(k): the deviation moves on at its rate.
-KnotInformation transition(double dt_s) {
-  KnotInformation phi = KnotInformation::Identity();
-  phi.topRightCorner<6, 6>().diagonal().setConstant(dt_s);
-  return phi;
-}
-
-void add_prior(const Prior& prior, const SolverConfig& config, const Unknowns& x, Matrix& H,
-               Unknowns& b) {
-  H.topLeftCorner<kKnotSize, kKnotSize>() += prior.begin_information;
-  b.head<kKnotSize>() -= prior.begin_information * (x.head<kKnotSize>() - prior.begin_mean);
-  const double dt_s = prior.span_s / config.segments;
-  const KnotInformation phi = transition(dt_s);
-  const KnotInformation W = process_information(config.acceleration_density, dt_s);
-  const KnotInformation Wphi = W * phi;
-  for (int k = 0; k < config.segments; ++k) {
-    const int i = kKnotSize * k, j = i + kKnotSize;
-    const Eigen::Matrix<double, kKnotSize, 1> e =
-        x.segment<kKnotSize>(j) - phi * x.segment<kKnotSize>(i);
-    H.block<kKnotSize, kKnotSize>(i, i) += phi.transpose() * Wphi;
-    H.block<kKnotSize, kKnotSize>(i, j) -= Wphi.transpose();
-    H.block<kKnotSize, kKnotSize>(j, i) -= Wphi;
-    H.block<kKnotSize, kKnotSize>(j, j) += W;
-    b.segment<kKnotSize>(i) += Wphi.transpose() * e;
-    b.segment<kKnotSize>(j) -= W * e;
-  }
-}
-
 /// Information of the last knot when the others are not asked: the Schur complement.
-KnotInformation marginal_of_last(const Matrix& H) {
+KnotInformation marginal_of_last(const NormalMatrix& H) {
   const auto n = H.rows() - kKnotSize;
-  const Matrix rest = H.topLeftCorner(n, n);
-  const Matrix cross = H.topRightCorner(n, kKnotSize);
+  const NormalMatrix rest = H.topLeftCorner(n, n);
+  const NormalMatrix cross = H.topRightCorner(n, kKnotSize);
   return H.bottomRightCorner<kKnotSize, kKnotSize>() - cross.transpose() * rest.ldlt().solve(cross);
 }
 
@@ -61,24 +31,6 @@ std::pair<Matrix6d, Vector6d> normal_equations(const ResidualSums& sums) {
 }
 
 }  // namespace
-
-KnotInformation process_information(const Vector6d& acceleration_density, double dt_s) {
-  const Vector6d w = acceleration_density.cwiseInverse();
-  KnotInformation W = KnotInformation::Zero();
-  W.topLeftCorner<6, 6>().diagonal() = 12.0 / (dt_s * dt_s * dt_s) * w;
-  W.topRightCorner<6, 6>().diagonal() = -6.0 / (dt_s * dt_s) * w;
-  W.bottomLeftCorner<6, 6>().diagonal() = -6.0 / (dt_s * dt_s) * w;
-  W.bottomRightCorner<6, 6>().diagonal() = 4.0 / dt_s * w;
-  return W;
-}
-
-KnotInformation Solver::propagated(const KnotInformation& information, double dt_s) const {
-  constexpr double kNoTime_s = 1e-5;  // from one firing to the next
-  if (dt_s < kNoTime_s) return information;
-  const KnotInformation phi = transition(dt_s);
-  const KnotInformation Q = process_information(config_.acceleration_density, dt_s).inverse();
-  return (phi * information.inverse() * phi.transpose() + Q).inverse();
-}
 
 void LocalMaps::end_keyframe() {
   for (CellMap* map : {&ground_fine, &ground_coarse, &structure_fine, &structure_coarse}) {
@@ -189,7 +141,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
                          Unknowns::Zero(n)};
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, solution);
-    Matrix H = Matrix::Zero(n, n);
+    NormalMatrix H = NormalMatrix::Zero(n, n);
     Unknowns b = Unknowns::Zero(n);
     solution.data_information.setZero();
     for (int bin = 0; bin <= kBins; ++bin) {
@@ -207,8 +159,9 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
         }
       }
     }
-    add_prior(prior, config_, solution.trajectory.knots, H, b);
-    const Unknowns step = H.ldlt().solve(b);
+    add_prior(prior, config_.segments, solution.trajectory.knots, H, b);
+    const Eigen::LDLT<NormalMatrix> factors(H);
+    const Unknowns step = factors.solve(b);
     if (!step.allFinite()) break;
     solution.trajectory.knots += step;
     ++solution.iterations;
@@ -220,9 +173,12 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     if (solution.iterations + 1 >= config_.max_iterations) stride = 1;
     if (solution.converged || solution.iterations == config_.max_iterations) {
       solution.end_information = marginal_of_last(H);
+      const UnrestPull by_unrest =
+          factors.solve(pull_of_unrest(prior, config_.segments, solution.trajectory.knots));
+      solution.end_by_unrest = by_unrest.middleRows<6>(n - kKnotSize);
     }
   }
-  const KnotInformation unrest = process_information(config_.acceleration_density, prior.span_s);
+  const KnotInformation unrest = process_information(prior.acceleration_density, prior.span_s);
   solution.motion_information = unrest.inverse().topLeftCorner<6, 6>().inverse();
   return solution;
 }

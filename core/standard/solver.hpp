@@ -2,6 +2,7 @@
 
 #include "core/standard/cell_map.hpp"
 #include "core/standard/feature_image.hpp"
+#include "core/standard/motion_prior.hpp"
 #include "core/standard/trajectory.hpp"
 
 #include <Eigen/Core>
@@ -29,29 +30,18 @@ struct LocalMaps {
   [[nodiscard]] int size() const;  ///< cells
 };
 
-/// What is believed of the motion before the scan is looked at.
-struct Prior {
-  Pose T_begin;
-  Twist twist;
-  double span_s = 0.1;
-  Eigen::Matrix<double, kKnotSize, 1> begin_mean =
-      Eigen::Matrix<double, kKnotSize, 1>::Zero();  ///< of the first knot
-  KnotInformation begin_information = KnotInformation::Identity();
-};
-
 struct SolverConfig {
   int segments = 1;
   int max_iterations = 8;
   float ground_kernel = 1.5F;     ///< Cauchy scale in sigmas of the map: ground is rough
   float structure_kernel = 1.0F;  ///< tighter: structure moves and hides
   float data_weight = 0.1F;  ///< neighbouring residuals are not independent: each counts for less
-  /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
-  Vector6d acceleration_density = Vector6d::Ones();
 };
 
 struct Solution {
   Trajectory trajectory;
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
+  EndByUnrest end_by_unrest = EndByUnrest::Zero();            ///< d end / d log density
   /// Of the pose, from the scan alone, as though its residuals were independent.
   Matrix6d data_information = Matrix6d::Zero();
   /// Of the pose, from a motion known exactly until the scan began.
@@ -75,9 +65,6 @@ class Solver {
  public:
   explicit Solver(const SolverConfig& config) : config_(config) {}
   Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior);
-
-  /// The information of a knot left after `dt_s` without data.
-  [[nodiscard]] KnotInformation propagated(const KnotInformation& information, double dt_s) const;
 
  private:
   static constexpr int kBins = 32;  // a scan's residuals share one of so many instants
@@ -103,9 +90,5 @@ class Solver {
   std::array<ResidualSums, kBins + 1> bins_;
   std::array<Asked, 32> asked_;
 };
-
-/// Information of the change between two knots `dt_s` apart under white noise on acceleration:
-/// inverse of Q = [dt^3/3 Qc, dt^2/2 Qc; dt^2/2 Qc, dt Qc].
-KnotInformation process_information(const Vector6d& acceleration_density, double dt_s);
 
 }  // namespace lilo::standard

@@ -41,9 +41,14 @@ SolverConfig solver_config(const StandardConfig& c) {
   s.ground_kernel = static_cast<float>(c.ground_kernel);
   s.structure_kernel = static_cast<float>(c.structure_kernel);
   s.data_weight = static_cast<float>(c.data_weight);
-  s.acceleration_density << c.roll_pitch_density, c.roll_pitch_density, c.yaw_density,
-      Eigen::Vector3d::Constant(c.translation_density);
   return s;
+}
+
+Vector6d usual_density(const StandardConfig& c) {
+  Vector6d density;
+  density << c.roll_pitch_density, c.roll_pitch_density, c.yaw_density,
+      Eigen::Vector3d::Constant(c.translation_density);
+  return density;
 }
 
 }  // namespace
@@ -53,6 +58,7 @@ Tracker::Tracker(const OdometryConfig& config)
       selection_(config.standard.ground_features, config.standard.structure_features),
       maps_(make_maps(config.standard)),
       solver_(solver_config(config.standard)),
+      unrest_(usual_density(config.standard)),
       footprint_(selection_.most()),
       motion_check_(selection_.most()),
       information_(first_information()) {
@@ -71,8 +77,11 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
   timing_ = {scan.start_ns, scan.end_ns, scan.motion_compensated};
   remember(features, chosen);
   const Prior prior = predict(timing_);
+  const TrackingStatus last_status = status_;
+  const EndByUnrest last_end_by_unrest = solution_.end_by_unrest;
   solution_ = scan_count_ == 1 ? start() : solver_.solve(chosen, maps_, prior);
   status_ = status_of(scan, solution_, chosen.size());
+  learn_unrest(last_status, last_end_by_unrest);
   accept(timing_, prior, solution_);
   if (seen_count_ > 1 && status_ != TrackingStatus::lost) {
     note_track(seen_[seen_count_ - 1], solution_.trajectory.at(0.0), T_odom_sensor_);
@@ -126,6 +135,12 @@ double Tracker::span_of(const Timing& timing) {
   return span_s > 0.0 ? span_s : kUsual_s;
 }
 
+/// Whether nothing is missing between a scan and the one that ended then.
+bool Tracker::follows(const Timing& scan, std::int64_t end_ns) {
+  constexpr std::int64_t kNextFiring_ns = 1'000'000;
+  return scan.start_ns - end_ns < kNextFiring_ns;
+}
+
 Prior Tracker::predict(const Timing& scan) const {
   const double duration_s = span_of(scan);
   const double since_s = scan_count_ == 0 ? duration_s : seconds(scan.end_ns - last_end_ns_);
@@ -139,7 +154,8 @@ Prior Tracker::predict(const Timing& scan) const {
   const double gap_s = unseen_s > kLongestGap_s ? 0.0 : std::max(0.0, unseen_s);
   prior.T_begin = moved(T_odom_sensor_, twist_, gap_s);
   prior.twist = twist_;
-  prior.begin_information = solver_.propagated(information_, gap_s);
+  prior.acceleration_density = unrest_.density();
+  prior.begin_information = propagated(information_, prior.acceleration_density, gap_s);
   return prior;
 }
 
@@ -159,13 +175,24 @@ TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
   return scan.complete && solution.converged ? TrackingStatus::tracking : TrackingStatus::degraded;
 }
 
+/// From what this scan says of the last one's end, where it began.
+void Tracker::learn_unrest(TrackingStatus last_status, const EndByUnrest& last_end_by_unrest) {
+  const auto is_good = [](TrackingStatus status) {
+    return status == TrackingStatus::tracking || status == TrackingStatus::degraded;
+  };
+  // A scan whose returns all belong to its end knows nothing of its beginning.
+  if (timing_.motion_compensated || !follows(timing_, last_end_ns_)) return;
+  if (!is_good(last_status) || !is_good(status_)) return;
+  unrest_.learn(solution_.trajectory.knots.head<6>(), last_end_by_unrest);
+}
+
 void Tracker::accept(const Timing& scan, const Prior& prior, const Solution& solution) {
   last_end_ns_ = scan.end_ns;
   if (scan_count_ == 0) return;
   const Eigen::Vector3d from_m = T_odom_sensor_.translation_m;
   if (status_ == TrackingStatus::lost) {
     T_odom_sensor_ = moved(prior.T_begin, prior.twist, prior.span_s);
-    information_ = solver_.propagated(prior.begin_information, prior.span_s);
+    information_ = propagated(prior.begin_information, prior.acceleration_density, prior.span_s);
   } else {
     T_odom_sensor_ = solution.trajectory.end();
     twist_ = solution.trajectory.end_twist();
@@ -200,9 +227,7 @@ void Tracker::grow_map(const Timing& scan, const std::vector<Feature>& features,
   const bool lost = status_ == TrackingStatus::lost;
   if (held_.waiting) {
     // The end of a scan is seen from one side only, by itself; this scan has seen the other.
-    constexpr std::int64_t kNextFiring_ns = 1'000'000;
-    const bool follows = scan.motion_compensated || scan.start_ns - held_.end_ns < kNextFiring_ns;
-    if (follows && !lost) {
+    if ((scan.motion_compensated || follows(scan, held_.end_ns)) && !lost) {
       held_.trajectory.knots.tail<kKnotSize>() += solution.trajectory.knots.head<kKnotSize>();
     }
     insert_held();

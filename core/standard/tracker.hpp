@@ -6,6 +6,7 @@
 #include "core/standard/motion_check.hpp"
 #include "core/standard/selection.hpp"
 #include "core/standard/solver.hpp"
+#include "core/standard/unrest.hpp"
 
 #include <array>
 #include <vector>
@@ -62,7 +63,9 @@ class Tracker {
 
   static KnotInformation first_information();
   static double span_of(const Timing& timing);
+  static bool follows(const Timing& scan, std::int64_t end_ns);
   [[nodiscard]] Prior predict(const Timing& scan) const;
+  void learn_unrest(TrackingStatus last_status, const EndByUnrest& last_end_by_unrest);
   void accept(const Timing& scan, const Prior& prior, const Solution& solution);
   void grow_map(const Timing& scan, const std::vector<Feature>& features, const Solution& solution);
   [[nodiscard]] bool is_young(const Solution& solution) const;
@@ -113,6 +116,7 @@ class Tracker {
   Sampled sampled_;
   Held held_;
   Drift drift_;
+  Unrest unrest_;
   Footprint footprint_;
   MotionCheck motion_check_;
 

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/pose.hpp"
+#include "core/standard/trajectory.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+
+/// What is believed of a scan's motion before its returns are looked at: that it goes on from the
+/// last scan's, with white noise on acceleration (Barfoot, State Estimation for Robotics, ch. 11).
+namespace lilo::standard {
+
+/// J'OJ over all knots.
+using NormalMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxUnknowns, kMaxUnknowns>;
+
+struct Prior {
+  Pose T_begin;
+  Twist twist;
+  double span_s = 0.1;
+  Eigen::Matrix<double, kKnotSize, 1> begin_mean =
+      Eigen::Matrix<double, kKnotSize, 1>::Zero();  ///< of the first knot
+  KnotInformation begin_information = KnotInformation::Identity();
+  /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
+  Vector6d acceleration_density = Vector6d::Ones();
+};
+
+/// The kinds of unrest that differ from vehicle to vehicle and road to road: rocking (roll and
+/// pitch), heaving (height). Which of them moves an axis (rotation, translation); -1: neither.
+inline constexpr int kUnrests = 2;
+inline constexpr std::array<int, 6> kUnrestOf{0, 0, -1, -1, -1, 1};
+using EndByUnrest = Eigen::Matrix<double, 6, kUnrests>;
+using UnrestPull = Eigen::Matrix<double, Eigen::Dynamic, kUnrests, 0, kMaxUnknowns, kUnrests>;
+
+/// Adds the prior to the normal equations H step = b of the deviation `x`.
+void add_prior(const Prior& prior, int segments, const Unknowns& x, NormalMatrix& H, Unknowns& b);
+
+/// How the right-hand side at the solution `x` changes by the logarithm of each unrest's density:
+/// the more of it is believed in, the weaker the pull to a constant velocity. Solved by the normal
+/// matrix it says where the solution would go.
+UnrestPull pull_of_unrest(const Prior& prior, int segments, const Unknowns& x);
+
+/// Information of the change between two knots `dt_s` apart under white noise on acceleration:
+/// inverse of Q = [dt^3/3 Qc, dt^2/2 Qc; dt^2/2 Qc, dt Qc].
+KnotInformation process_information(const Vector6d& acceleration_density, double dt_s);
+
+/// The information of a knot left after `dt_s` without data.
+KnotInformation propagated(const KnotInformation& information, const Vector6d& acceleration_density,
+                           double dt_s);
+
+}  // namespace lilo::standard

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "core/standard/motion_prior.hpp"
+
+#include <array>
+
+namespace lilo::standard {
+
+/// What the ground does to the vehicle, learnt on the way: power densities of how it rocks and
+/// heaves. Between a car on asphalt and a stiff robot on cobbles lies a factor of a thousand.
+/// Believed too calm, the end of every scan lags behind; too wild, it follows each error of the few
+/// returns that saw it.
+///
+/// A scan sees its end from one side only. The next one begins there and corrects it. When the
+/// correction goes where the end would have gone had more unrest been believed in, there is more:
+/// a step down the slope of the squared correction, which asks nothing of the noise or of the
+/// spectrum of the motion. What the driver does, yaw and speed, is left as configured: learnt the
+/// same way, yaw made headings drift.
+class Unrest {
+ public:
+  /// `usual`: densities of all axes, kept but for those of the unrest, where learning begins.
+  explicit Unrest(const Vector6d& usual) : usual_(usual), density_(usual) {}
+
+  /// `correction`: by how much a scan moves the end of the one before; `end_by_unrest`: by how much
+  /// that end goes with the logarithm of each density. Both rotation, translation (rad, m).
+  void learn(const Vector6d& correction, const EndByUnrest& end_by_unrest);
+
+  /// Rotation (rad^2/s^3), translation (m^2/s^3).
+  [[nodiscard]] const Vector6d& density() const { return density_; }
+
+ private:
+  struct Kind {
+    double log_ratio = 0.0;                   // to the usual density
+    double correction2 = 0.0, change2 = 0.0;  // squares, as of late
+  };
+  Vector6d usual_, density_;
+  std::array<Kind, kUnrests> kinds_;
+};
+
+}  // namespace lilo::standard

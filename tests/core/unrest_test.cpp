@@ -1,0 +1,166 @@
+#include "core/standard/unrest.hpp"
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace lilo::standard {
+namespace {
+
+using Knot = Eigen::Matrix<double, kKnotSize, 1>;
+
+constexpr int kSegments = 2;
+constexpr int kSize = kKnotSize * (kSegments + 1);
+constexpr double kSpan_s = 0.1;
+constexpr int kLooks = 16;        // in each scan, at the whole pose
+constexpr double kNoise = 1e-3;   // of each, rad and m
+constexpr double kUnrest = 0.05;  // of the motion, rad^2/s^3 and m^2/s^3, all axes
+
+Vector6d six(double rocking, double heaving, double other) {
+  Vector6d v;
+  v << rocking, rocking, other, other, other, heaving;
+  return v;
+}
+
+/// White noise on the acceleration of a pose, in exact steps.
+class Motion {
+ public:
+  explicit Motion(unsigned seed) : rng_(seed) {}
+  const Vector6d& go_on(double dt_s) {
+    // Cholesky of [dt^3/3, dt^2/2; dt^2/2, dt].
+    const double rate = std::sqrt(kUnrest * dt_s), half = 0.5 * dt_s;
+    const double rest = std::sqrt(kUnrest * dt_s * dt_s * dt_s / 12.0);
+    for (int axis = 0; axis < 6; ++axis) {
+      const double n = rate * draw();
+      pose_[axis] += dt_s * rate_[axis] + half * n + rest * draw();
+      rate_[axis] += n;
+    }
+    return pose_;
+  }
+  double draw() { return normal_(rng_); }
+
+ private:
+  std::mt19937 rng_;
+  std::normal_distribution<double> normal_;
+  Vector6d pose_ = Vector6d::Zero(), rate_ = Vector6d::Zero();
+};
+
+struct Equations {
+  NormalMatrix H = NormalMatrix::Zero(kSize, kSize);
+  Unknowns b = Unknowns::Zero(kSize);
+};
+
+/// A scan's looks at the motion; the unknowns are the poses and rates themselves.
+Equations looks_at(Motion& motion) {
+  Equations data;
+  constexpr double kInformation = 1.0 / (kNoise * kNoise);
+  for (int look = 0; look < kLooks; ++look) {
+    Vector6d seen = motion.go_on(kSpan_s / kLooks);
+    for (double& value : seen) value += kNoise * motion.draw();
+    const KnotWeights w = weights_at((look + 1.0) / kLooks, kSegments, kSpan_s);
+    for (int i = 0; i < 4; ++i) {
+      const double wi = w.weight[static_cast<std::size_t>(i)];
+      data.b.segment<6>(kKnotSize * w.first + 6 * i) += wi * kInformation * seen;
+      for (int j = 0; j < 4; ++j) {
+        data.H.block<6, 6>(kKnotSize * w.first + 6 * i, kKnotSize * w.first + 6 * j)
+            .diagonal()
+            .array() += wi * w.weight[static_cast<std::size_t>(j)] * kInformation;
+      }
+    }
+  }
+  return data;
+}
+
+Unknowns solution(const Prior& prior, Equations all) {
+  add_prior(prior, kSegments, Unknowns::Zero(kSize), all.H, all.b);
+  return all.H.ldlt().solve(all.b);
+}
+
+EndByUnrest end_by_unrest(const Prior& prior, Equations all, const Unknowns& x) {
+  add_prior(prior, kSegments, x, all.H, all.b);
+  const UnrestPull dx = all.H.ldlt().solve(pull_of_unrest(prior, kSegments, x));
+  return dx.middleRows<6>(kSize - kKnotSize);
+}
+
+/// Follows 400 scans and learns; the mean logarithm of what is believed over what is, by kind, in
+/// the last 300.
+Eigen::Vector2d learnt(const Vector6d& usual, unsigned seed) {
+  Motion motion(seed);
+  Unrest unrest(usual);
+  Prior prior;
+  prior.begin_information = 1e8 * KnotInformation::Identity();
+  EndByUnrest by_unrest = EndByUnrest::Zero();
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (int scan = 0; scan < 400; ++scan) {
+    prior.acceleration_density = unrest.density();
+    const Equations data = looks_at(motion);
+    const Unknowns x = solution(prior, data);
+    if (scan > 0) unrest.learn((x.head<kKnotSize>() - prior.begin_mean).head<6>(), by_unrest);
+    by_unrest = end_by_unrest(prior, data, x);
+    Equations all = data;
+    add_prior(prior, kSegments, x, all.H, all.b);
+    const KnotInformation covariance = all.H.ldlt()
+                                           .solve(NormalMatrix::Identity(kSize, kSize))
+                                           .bottomRightCorner<kKnotSize, kKnotSize>();
+    prior.begin_information = covariance.inverse();
+    prior.begin_mean = x.tail<kKnotSize>();
+    if (scan < 100) continue;
+    sum[0] += std::log(unrest.density()[0] / kUnrest) / 300.0;
+    sum[1] += std::log(unrest.density()[5] / kUnrest) / 300.0;
+  }
+  return sum;
+}
+
+TEST(Unrest, PullLeadsWhereTheSolutionGoes) {
+  Motion motion(1);
+  Prior prior;
+  prior.begin_information = 1e4 * KnotInformation::Identity();
+  prior.acceleration_density = six(0.02, 0.3, 0.1);
+  const Equations data = looks_at(motion);
+  const EndByUnrest end = end_by_unrest(prior, data, solution(prior, data));
+  constexpr double kStep = 1e-4;
+  for (int kind = 0; kind < kUnrests; ++kind) {
+    const double up = std::exp(kStep);
+    Prior more = prior;
+    more.acceleration_density = kind == 0 ? six(0.02 * up, 0.3, 0.1) : six(0.02, 0.3 * up, 0.1);
+    const Unknowns change = (solution(more, data) - solution(prior, data)) / kStep;
+    EXPECT_GT(change.norm(), 1e-6);
+    EXPECT_LT((end.col(kind) - change.segment<6>(kSize - kKnotSize)).norm(),
+              1e-3 * end.col(kind).norm());
+  }
+}
+
+// Where the noise is white and the motion as the prior has it, the errors are least where the prior
+// is true.
+TEST(Unrest, FindsThatOfTheMotion) {
+  for (const double wrong : {0.04, 1.0, 25.0}) {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const Eigen::Vector2d logs = learnt(Vector6d::Constant(wrong * kUnrest), seed);
+      EXPECT_LT(logs.cwiseAbs().maxCoeff(), std::log(2.5)) << "begun at " << wrong;
+    }
+  }
+}
+
+TEST(Unrest, LearnsEachKindAloneAndStaysInBounds) {
+  const Vector6d usual = six(0.3, 3.0, 0.03);
+  EndByUnrest by_unrest = EndByUnrest::Zero();
+  by_unrest.col(0) << 1e-3, -1e-3, 0.0, 0.0, 0.0, 0.01;
+  by_unrest.col(1) << 1e-3, 0.0, 0.0, 0.0, 0.01, 0.0;  // the height does not follow
+  Unrest unrest(usual);
+  unrest.learn(six(0.0, 0.0, 0.01), by_unrest);
+  EXPECT_EQ(unrest.density(), usual);
+  Vector6d correction = six(0.0, 0.02, 0.01);
+  correction[0] = 1e-4;
+  correction[1] = -1e-4;
+  for (int scan = 0; scan < 200; ++scan) unrest.learn(correction, by_unrest);
+  EXPECT_NEAR(std::log(unrest.density()[0] / usual[0]), 4.0, 1e-9);
+  EXPECT_EQ(unrest.density()[1], unrest.density()[0]);
+  EXPECT_EQ(unrest.density().tail<4>(), usual.tail<4>());
+  for (int scan = 0; scan < 200; ++scan) unrest.learn(-correction, by_unrest);
+  EXPECT_NEAR(std::log(unrest.density()[0] / usual[0]), -4.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace lilo::standard
