@@ -7,7 +7,7 @@ namespace lilo {
 namespace {
 
 // Five packets of a VLP-16 or an HDL-64E: networks overtake by one or two.
-constexpr std::size_t kUnsettledReturns = 5 * 384;
+constexpr std::size_t kUnsettledReturns = std::size_t{5} * 384;
 
 }  // namespace
 

@@ -43,7 +43,7 @@ Odometry::~Odometry() = default;
 Estimate Odometry::process(const Scan& scan, StageHook hook) {
   impl_->extractor.finish(scan, impl_->features);
   if (std::holds_alternative<standard::Tracker>(impl_->profile)) hook(Stage::project);
-  const Estimate estimate = align(scan, impl_->features, hook);
+  Estimate estimate = align(scan, impl_->features, hook);
   update_map(impl_->features, hook);
   return estimate;
 }

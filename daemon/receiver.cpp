@@ -150,7 +150,7 @@ void prepare_slot(ScanSlot& slot, SensorModel model, const OdometryConfig& odome
   if (odometry.profile != Profile::standard) return;
   const int rings = model == SensorModel::hdl64e ? 64 : 16;
   const int columns = standard::FeatureImage::columns_for(rings, odometry.standard.columns);
-  slot.features.all.resize(static_cast<std::size_t>(rings * columns));
+  slot.features.all.resize(static_cast<std::size_t>(rings) * static_cast<std::size_t>(columns));
   slot.features.all.clear();
 }
 

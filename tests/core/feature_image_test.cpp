@@ -23,6 +23,14 @@ double azimuth_of(int column, int columns) {
   return std::numbers::pi * (1.0 - 2.0 * (column + 0.5) / columns);
 }
 
+Eigen::Vector3d place_of(const standard::Feature& f) {
+  return Eigen::Vector3f(f.x_m, f.y_m, f.z_m).cast<double>();
+}
+
+Eigen::Vector3d reach_of(const standard::Feature& f) {
+  return Eigen::Vector3f(f.dx_m, f.dy_m, f.dz_m).cast<double>();
+}
+
 /// Where a ring meets what stands so far away.
 Return return_at(const BeamTable& beams, std::uint8_t ring, double azimuth_rad, double flat_m) {
   const double up = std::tan(static_cast<double>(beams.elevation_rad[ring]));
@@ -62,7 +70,7 @@ TEST(FeatureImage, WhatOneRingHitsMayBeAsHighAsTheNextOneLooks) {
     scan.returns.push_back(return_at(k16, 9, azimuth, 30.0 / std::cos(azimuth)));
   }
   for (const standard::Feature& f : image.build(scan)) {
-    const Eigen::Vector3d p(f.x_m, f.y_m, f.z_m), up(f.dx_m, f.dy_m, f.dz_m);
+    const Eigen::Vector3d p = place_of(f), up = reach_of(f);
     EXPECT_NEAR(up.norm(), p.norm() * gap_rad, 1e-3);
     EXPECT_NEAR(up.normalized().dot(p.normalized()), 0.0, 1e-5);
     EXPECT_GT(up.z(), 0.0);
@@ -114,8 +122,8 @@ TEST(FeatureImage, BelievesTheGroundBetweenNeighbouringRingsOnlyUpToTenMetres) {
     if (f.ring == 7) continue;  // meets the ground 86 m off, three times as far as the next
     ASSERT_LT(f.ring, 7);
     ++count[f.ring];
-    const double flat_m = std::hypot(f.x_m, f.y_m);
-    const double reach_flat_m = static_cast<double>(f.x_m * f.dx_m + f.y_m * f.dy_m) / flat_m;
+    const double flat_m = place_of(f).head<2>().norm();
+    const double reach_flat_m = place_of(f).head<2>().dot(reach_of(f).head<2>()) / flat_m;
     if (f.ring == 6) {  // 28.6 m away, the ring below 17.1 m
       EXPECT_NEAR(f.dz_m, flat_m * 2.0 * std::numbers::pi / 180.0, 1e-3);
     } else {  // the ring below is nearer; the lowest has only the one above
@@ -136,7 +144,7 @@ TEST(FeatureImage, MakesNoRampOfFloorAndWall) {
   int ground = 0;
   for (const standard::Feature& f : image.build(test::still_scan_of(hall, k16, {}))) {
     if (f.kind != standard::Kind::ground) continue;
-    const Eigen::Vector3d p(f.x_m, f.y_m, f.z_m), reach(f.dx_m, f.dy_m, f.dz_m);
+    const Eigen::Vector3d p = place_of(f), reach = reach_of(f);
     EXPECT_NEAR(p.z(), -0.8, 1e-3) << int{f.ring};
     const bool along_floor = std::abs(reach.z()) < 1e-3;
     const bool nobody_knows = std::abs(reach.normalized().dot(p.normalized())) < 1e-3;

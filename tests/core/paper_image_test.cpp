@@ -83,7 +83,7 @@ TEST(Interpolation, KeepsToTheSurfaceAndNeverBridgesAJump) {
   interpolate_rows(image, 32, taller);
   ASSERT_EQ(taller.rows(), 32);
   cv::Mat1b labels(taller.range_m.size(), static_cast<uchar>(Label::surface));
-  labels.setTo(static_cast<uchar>(Label::empty), taller.range_m <= 0.0F);
+  labels.setTo(static_cast<uchar>(Label::empty), taller.range_m <= 0.0);
   int made = 0;
   for (int i = 1; i < 32; i += 2) made += cv::countNonZero(taller.range_m.row(i));
   EXPECT_GT(made, 1000);

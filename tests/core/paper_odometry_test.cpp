@@ -102,9 +102,13 @@ std::size_t map_size_after_a_drive(double keyframe_m) {
   config.paper.keyframe_m = keyframe_m;
   Odometry odometry(config);
   for (std::uint64_t k = 0; k < 10; ++k) {
-    const Pose T{Eigen::Quaterniond::Identity(), {-6.0 + 0.5 * static_cast<double>(k), 0.0, 0.0}};
+    const Eigen::Vector3d at_m(-6.0 + 0.5 * static_cast<double>(k), 0.0, 0.0);
     odometry.process(test::scan_of(
-        test::yard(), k16, 1800, [&](double) { return T; }, k));
+        test::yard(), k16, 1800,
+        [&](double) {
+          return Pose{Eigen::Quaterniond::Identity(), at_m};
+        },
+        k));
   }
   return odometry.map_points().size();
 }

@@ -177,7 +177,7 @@ TEST(PlotJuggler, ReadsAllThatASinkIsSent) {
     ASSERT_TRUE(message["timestamp"].is_number()) << *datagram;
     const std::string kind = message.contains("pose") ? "pose" : "health";
     add_series(message, "", of_kind[kind]);
-    if (of_kind.size() == 2 && of_kind["pose"].count("/pose/position/x") != 0 &&
+    if (of_kind.size() == 2 && of_kind["pose"].contains("/pose/position/x") &&
         message.contains("health") && message["health"]["poses_sent"] > 5)
       break;
   }

@@ -246,8 +246,8 @@ std::vector<json> poses_of(const std::string& pcap, Lilod& lilod) {
 
 TEST_F(Hostile, PosesAreThoseOfAQuietNetwork) {
   const std::string folder = testing::TempDir() + "lilo_hostile_" + std::to_string(getpid());
-  const Finished sim =
-      run_to_end({LILO_BIN_DIR "/lilo", "sim", folder, "--quiet", "--duration-s", "2.5"});
+  const std::string lilo = LILO_BIN_DIR "/lilo";
+  const Finished sim = run_to_end({lilo, "sim", folder, "--quiet", "--duration-s", "2.5"});
   ASSERT_EQ(sim.exit_code, 0) << sim.error;
   const std::string slots = std::string(kOpen) + "realtime:\n  ring_slots: 64\n";
   Lilod quiet(slots), attacked(slots);

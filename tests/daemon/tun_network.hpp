@@ -17,6 +17,7 @@ class TunNetwork {
   struct Endpoint {
     std::uint32_t ipv4 = 0;
     std::uint16_t port = 0;
+    // NOLINTNEXTLINE(modernize-use-nullptr): what clang makes of it compares with 0
     auto operator<=>(const Endpoint&) const = default;
   };
   struct Datagram {

@@ -146,6 +146,7 @@ std::string pcapng_bytes(const std::vector<Record>& records) {
 
 std::vector<Record> records_of(const std::vector<TimedPacket>& packets) {
   std::vector<Record> records;
+  records.reserve(packets.size());
   for (const TimedPacket& p : packets) {
     records.push_back({ethernet(ipv4(udp_datagram(p.bytes, p.port))), p.received_ns});
   }

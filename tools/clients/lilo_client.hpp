@@ -53,7 +53,10 @@ class FlatJson {
     good_ = value("") && (skip(), at_ == text_.size());
   }
   bool good() const { return good_; }
-  bool has(const std::string& path) const { return scalars_.count(path) != 0; }
+  bool has(const std::string& path) const {
+    const auto found = scalars_.find(path);
+    return found != scalars_.end();
+  }
   std::string text(const std::string& path) const {
     const auto found = scalars_.find(path);
     return found == scalars_.end() ? std::string() : found->second;

@@ -2,8 +2,9 @@
 #include "lilo_client.hpp"
 
 #include <cstdio>
+#include <exception>
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   lilo::Client client(argc > 1 ? argv[1] : "127.0.0.1",
                       static_cast<std::uint16_t>(argc > 2 ? std::atoi(argv[2]) : 9871));
   lilo::ClientPose pose;
@@ -11,4 +12,7 @@ int main(int argc, char** argv) {
     std::printf("%llu %s %.3f %.3f %.3f\n", static_cast<unsigned long long>(pose.seq),
                 pose.status.c_str(), pose.position[0], pose.position[1], pose.position[2]);
   }
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
 }

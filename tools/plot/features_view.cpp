@@ -68,8 +68,8 @@ std::pair<double, double> range_bounds_m(const cv::Mat1f& range_m) {
                [](float r) { return r > 0.0F; });
   if (ranges.empty()) return {1.0, 2.0};
   std::sort(ranges.begin(), ranges.end());
-  const double near_m = ranges[ranges.size() / 100];
-  const double far_m = ranges[ranges.size() - 1 - ranges.size() / 100];
+  const auto near_m = static_cast<double>(ranges[ranges.size() / 100]);
+  const auto far_m = static_cast<double>(ranges[ranges.size() - 1 - ranges.size() / 100]);
   return {near_m, std::max(far_m, 1.1 * near_m)};
 }
 
@@ -94,7 +94,7 @@ cv::Mat picture_of(const Segmented& scan, const Part& part, int row_height) {
 }
 
 int pixels_of(const Segmented& scan, const Part& part) {
-  return part.whole ? cv::countNonZero(scan.image.range_m > 0.0F)
+  return part.whole ? cv::countNonZero(scan.image.range_m > 0.0)
                     : cv::countNonZero(scan.labels == static_cast<int>(part.label));
 }
 

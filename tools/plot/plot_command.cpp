@@ -37,7 +37,7 @@ std::string base_name(const std::string& path) {
 
 /// Of a recording: captures in folders of their own are all called data.pcap.
 std::string recording_name(const std::string& path) {
-  const std::string name = base_name(path);
+  std::string name = base_name(path);
   if (name != "data.pcap") return name;
   return std::filesystem::canonical(path).parent_path().filename().string();
 }

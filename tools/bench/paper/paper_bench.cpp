@@ -120,6 +120,7 @@ void run_paper_bench(const std::vector<BenchmarkSet>& sets, const Settings& sett
   const std::vector<Work> work = all_work(sets, settings.sensor);
   work_off(work, settings, folder, ledger);
   std::vector<CellResult> results;  // in the order of the call, whatever else the ledger holds
+  results.reserve(work.size());
   for (const Work& item : work) results.push_back(*ledger.find(item.cell));
   write_report(sets, results, folder);
 }

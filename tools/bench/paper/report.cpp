@@ -17,8 +17,8 @@ void write_tracks(const std::vector<BenchmarkSet>& sets, const std::vector<CellR
     for (const BenchmarkSet& set : sets) {
       if (set.name != result.cell.set) continue;
       const std::string stem = file_stem(result.cell);
-      const Trajectory estimate = read_trajectory(folder + "/poses/" + stem + ".tum");
-      write_csv(folder + "/tracks/" + stem + ".csv",
+      const Trajectory estimate = read_trajectory(fmt::format("{}/poses/{}.tum", folder, stem));
+      write_csv(fmt::format("{}/tracks/{}.csv", folder, stem),
                 error_table(error_track(associate(estimate, *set.truth))));
     }
   }
