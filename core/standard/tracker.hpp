@@ -67,6 +67,15 @@ class Tracker {
   [[nodiscard]] Prior predict(const Timing& scan) const;
   void learn_unrest(TrackingStatus last_status, const EndByUnrest& last_end_by_unrest);
   void accept(const Timing& scan, const Prior& prior, const Solution& solution);
+  bool is_refuted(const std::vector<Feature>& chosen);
+  [[nodiscard]] TrackingStatus status_of(const Scan& scan, const Solution& solution,
+                                         std::size_t feature_count) const;
+  [[nodiscard]] Estimate estimate(const Scan& scan, const Solution& solution,
+                                  const std::vector<Feature>& chosen) const;
+  [[nodiscard]] Matrix6d alignment_covariance() const;
+  [[nodiscard]] Matrix6d sensor_covariance() const;
+
+  // The map, in tracker_map.cpp.
   void grow_map(const Timing& scan, const std::vector<Feature>& features, const Solution& solution);
   [[nodiscard]] bool is_young(const Solution& solution) const;
   /// How many features a keyframe may add to the map.
@@ -76,8 +85,6 @@ class Tracker {
   void hold(const std::vector<Feature>& features, const Trajectory& trajectory,
             std::int64_t end_ns);
   void insert_held();
-  [[nodiscard]] Matrix6d alignment_covariance() const;
-  [[nodiscard]] Matrix6d sensor_covariance() const;
 
   // The start, in tracker_start.cpp.
   void start_anew();
@@ -101,11 +108,6 @@ class Tracker {
   static void note_track(Seen& seen, const Pose& T_begin, const Pose& T_end);
   void note_prediction(Seen& seen) const;
   void remember(const std::vector<Feature>& all, const std::vector<Feature>& chosen);
-  bool is_refuted(const std::vector<Feature>& chosen);
-  [[nodiscard]] TrackingStatus status_of(const Scan& scan, const Solution& solution,
-                                         std::size_t feature_count) const;
-  [[nodiscard]] Estimate estimate(const Scan& scan, const Solution& solution,
-                                  const std::vector<Feature>& chosen) const;
 
   OdometryConfig config_;
   Selection selection_;
