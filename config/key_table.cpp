@@ -111,12 +111,13 @@ std::vector<Key> default_profile_keys() {
       real("odometry.default.roll_pitch_density", LILO_MEMBER(odometry.standard.roll_pitch_density),
            0.0001, 100.0, "", kRestart,
            "How fast roll and pitch rates may change: power density of the angular acceleration "
-           "(rad2/s3). Larger on stiff or legged robots."),
+           "(rad2/s3). What the ground asks for is learnt from here on, up to 55 times more or "
+           "less."),
       real("odometry.default.yaw_density", LILO_MEMBER(odometry.standard.yaw_density), 0.0001,
-           100.0, "", kRestart, "The same for the yaw rate (rad2/s3)."),
+           100.0, "", kRestart, "The same for the yaw rate (rad2/s3); not learnt."),
       real("odometry.default.translation_density",
            LILO_MEMBER(odometry.standard.translation_density), 0.001, 1000.0, "", kRestart,
-           "The same for the velocity (m2/s3)."),
+           "The same for the velocity (m2/s3); up and down it is learnt as well."),
   };
 }
 

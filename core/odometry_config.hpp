@@ -77,7 +77,8 @@ struct StandardConfig {
   double data_weight = 0.1;       ///< neighbouring residuals are not independent: each counts less
   int segments = 2;               ///< pieces of the motion within one scan
   int max_iterations = 8;
-  /// Power densities of the acceleration's white noise: how fast the motion may change.
+  /// Power densities of the acceleration's white noise: how fast the motion may change. That of
+  /// roll and pitch, and of the height, is where learning begins (standard/unrest.hpp).
   double roll_pitch_density = 0.3;   ///< rad^2/s^3: suspension, rough ground
   double yaw_density = 0.03;         ///< rad^2/s^3
   double translation_density = 3.0;  ///< m^2/s^3
