@@ -112,7 +112,7 @@ std::vector<Key> default_profile_keys() {
            0.0001, 100.0, "", kRestart,
            "How fast roll and pitch rates may change: power density of the angular acceleration "
            "(rad2/s3). What the ground asks for is learnt from here on, up to 55 times more or "
-           "less."),
+           "seven times less."),
       real("odometry.default.yaw_density", LILO_MEMBER(odometry.standard.yaw_density), 0.0001,
            100.0, "", kRestart, "The same for the yaw rate (rad2/s3); not learnt."),
       real("odometry.default.translation_density",

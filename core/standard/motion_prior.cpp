@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
+
 namespace lilo::standard {
 namespace {
 
@@ -33,6 +35,33 @@ void add_prior(const Prior& prior, int segments, const Unknowns& x, NormalMatrix
     b.segment<kKnotSize>(i) += Wphi.transpose() * e;
     b.segment<kKnotSize>(j) -= W * e;
   }
+}
+
+Surprise surprise_of(const Prior& prior, int segments, const Unknowns& x) {
+  const double dt_s = prior.span_s / segments;
+  const KnotInformation phi = transition(dt_s);
+  const KnotInformation W = process_information(prior.acceleration_density, dt_s);
+  Surprise squares = Surprise::Zero(), count = Surprise::Zero();
+  for (int k = 0; k < segments; ++k) {
+    const int i = kKnotSize * k;
+    const Knot e = x.segment<kKnotSize>(i + kKnotSize) - phi * x.segment<kKnotSize>(i);
+    const Knot eWe = e.cwiseProduct(W * e);
+    for (int axis = 0; axis < 6; ++axis) {
+      const int unrest = kUnrestOf[static_cast<std::size_t>(axis)];
+      if (unrest < 0) continue;
+      squares[unrest] += eWe[axis] + eWe[axis + 6];
+      count[unrest] += 2.0;
+    }
+  }
+  return squares.cwiseQuotient(count);
+}
+
+Prior loosened(Prior prior, const Surprise& surprise) {
+  for (int axis = 0; axis < 6; ++axis) {
+    const int unrest = kUnrestOf[static_cast<std::size_t>(axis)];
+    if (unrest >= 0) prior.acceleration_density[axis] *= std::max(1.0, surprise[unrest]);
+  }
+  return prior;
 }
 
 UnrestPull pull_of_unrest(const Prior& prior, int segments, const Unknowns& x) {

@@ -31,10 +31,18 @@ struct Prior {
 inline constexpr int kUnrests = 2;
 inline constexpr std::array<int, 6> kUnrestOf{0, 0, -1, -1, -1, 1};
 using EndByUnrest = Eigen::Matrix<double, 6, kUnrests>;
+using Surprise = Eigen::Matrix<double, kUnrests, 1>;
 using UnrestPull = Eigen::Matrix<double, Eigen::Dynamic, kUnrests, 0, kMaxUnknowns, kUnrests>;
 
 /// Adds the prior to the normal equations H step = b of the deviation `x`.
 void add_prior(const Prior& prior, int segments, const Unknowns& x, NormalMatrix& H, Unknowns& b);
+
+/// Mean square, in sigmas of the prior, of how the motion `x` departs from a constant velocity, by
+/// kind of unrest. Where the prior is right it is 1, or less: data count for less than they say.
+Surprise surprise_of(const Prior& prior, int segments, const Unknowns& x);
+
+/// The prior with so much more unrest that such a motion is no surprise: its tails are heavy.
+Prior loosened(Prior prior, const Surprise& surprise);
 
 /// How the right-hand side at the solution `x` changes by the logarithm of each unrest's density:
 /// the more of it is believed in, the weaker the pull to a constant velocity. Solved by the normal

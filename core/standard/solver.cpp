@@ -159,7 +159,9 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
         }
       }
     }
-    add_prior(prior, config_.segments, solution.trajectory.knots, H, b);
+    solution.surprise = surprise_of(prior, config_.segments, solution.trajectory.knots);
+    const Prior believed = loosened(prior, solution.surprise);
+    add_prior(believed, config_.segments, solution.trajectory.knots, H, b);
     const Eigen::LDLT<NormalMatrix> factors(H);
     const Unknowns step = factors.solve(b);
     if (!step.allFinite()) break;
@@ -174,7 +176,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     if (solution.converged || solution.iterations == config_.max_iterations) {
       solution.end_information = marginal_of_last(H);
       const UnrestPull by_unrest =
-          factors.solve(pull_of_unrest(prior, config_.segments, solution.trajectory.knots));
+          factors.solve(pull_of_unrest(believed, config_.segments, solution.trajectory.knots));
       solution.end_by_unrest = by_unrest.middleRows<6>(n - kKnotSize);
     }
   }

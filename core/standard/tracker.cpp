@@ -173,7 +173,7 @@ void Tracker::learn_unrest(TrackingStatus last_status, const EndByUnrest& last_e
   // A scan whose returns all belong to its end knows nothing of its beginning.
   if (timing_.motion_compensated || !follows(timing_, last_end_ns_)) return;
   if (!is_good(last_status) || !is_good(status_)) return;
-  unrest_.learn(solution_.trajectory.knots.head<6>(), last_end_by_unrest);
+  unrest_.learn(solution_.trajectory.knots.head<6>(), last_end_by_unrest, solution_.surprise);
 }
 
 void Tracker::accept(const Timing& scan, const Prior& prior, const Solution& solution) {

@@ -14,8 +14,9 @@ namespace lilo::standard {
 /// A scan sees its end from one side only. The next one begins there and corrects it. When the
 /// correction goes where the end would have gone had more unrest been believed in, there is more:
 /// a step down the slope of the squared correction, which asks nothing of the noise or of the
-/// spectrum of the motion. What the driver does, yaw and speed, is left as configured: learnt the
-/// same way, yaw made headings drift.
+/// spectrum of the motion. Calm is believed slowly and never far, a surprise at once: a robot that
+/// stood for a minute sets off on cobbles. What the driver does, yaw and speed, is left as
+/// configured: learnt the same way, a straight road made yaw too stiff for the bend at its end.
 class Unrest {
  public:
   /// `usual`: densities of all axes, kept but for those of the unrest, where learning begins.
@@ -23,7 +24,9 @@ class Unrest {
 
   /// `correction`: by how much a scan moves the end of the one before; `end_by_unrest`: by how much
   /// that end goes with the logarithm of each density. Both rotation, translation (rad, m).
-  void learn(const Vector6d& correction, const EndByUnrest& end_by_unrest);
+  /// `surprise`: the scan's own.
+  void learn(const Vector6d& correction, const EndByUnrest& end_by_unrest,
+             const Surprise& surprise);
 
   /// Rotation (rad^2/s^3), translation (m^2/s^3).
   [[nodiscard]] const Vector6d& density() const { return density_; }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <random>
 #include <vector>
 
 namespace lilo {
@@ -125,6 +126,39 @@ TEST(DefaultProfile, StandsStillWithoutDrift) {
     EXPECT_LT(e.T_odom_sensor.translation_m.norm(), 0.02) << "scan " << k;
     EXPECT_LT(change.translation_m.norm(), 5e-4) << "scan " << k;
     EXPECT_LT(so3_log(change.rotation).norm(), 1e-4) << "scan " << k;
+  }
+}
+
+// By then it takes the ground for calm.
+TEST(DefaultProfile, SetsOffOnCobblesAfterStandingStill) {
+  constexpr int kStill = 100;
+  const auto at = [](double t_s) {
+    const double since_s = std::max(0.0, t_s - 0.1 * kStill);
+    const double swing = 0.06 * std::sin(6.0 * std::numbers::pi * since_s);  // 3.4 degrees at 3 Hz
+    return Pose{so3_exp({swing, -0.7 * swing, 0.0}), {since_s - 5.0, 0.0, 0.3 * swing}};
+  };
+  std::mt19937 rng(1);
+  std::normal_distribution<float> noise(0.0F, 0.002F);
+  for (const BeamTable& beams : {k16, k64}) {
+    Odometry odometry{OdometryConfig{}};
+    int tracking = 0;
+    for (int k = 0; k < kStill + 40; ++k) {
+      Scan scan = test::scan_of(
+          test::yard(), beams, 900, [&](double s) { return at(0.1 * (k + s)); },
+          static_cast<std::uint64_t>(k));
+      for (Return& r : scan.returns) {
+        const float stretch = 1.0F + noise(rng);  // 2 cm at 10 m
+        r.x_m *= stretch;
+        r.y_m *= stretch;
+        r.z_m *= stretch;
+      }
+      const Estimate e = odometry.process(scan);
+      const Pose error = at(0.1 * (k + 1)).inverse() * at(0.1) * e.T_odom_sensor;
+      EXPECT_LT(error.translation_m.norm(), 0.05) << beams.ring_count << " beams, scan " << k;
+      EXPECT_LT(so3_log(error.rotation).norm(), 0.015) << beams.ring_count << " beams, scan " << k;
+      if (k >= kStill && e.status == TrackingStatus::tracking) ++tracking;
+    }
+    EXPECT_GT(tracking, 30) << beams.ring_count << " beams";
   }
 }
 

@@ -97,7 +97,8 @@ Eigen::Vector2d learnt(const Vector6d& usual, unsigned seed) {
     prior.acceleration_density = unrest.density();
     const Equations data = looks_at(motion);
     const Unknowns x = solution(prior, data);
-    if (scan > 0) unrest.learn((x.head<kKnotSize>() - prior.begin_mean).head<6>(), by_unrest);
+    if (scan > 0)
+      unrest.learn((x.head<kKnotSize>() - prior.begin_mean).head<6>(), by_unrest, Surprise::Zero());
     by_unrest = end_by_unrest(prior, data, x);
     Equations all = data;
     add_prior(prior, kSegments, x, all.H, all.b);
@@ -135,7 +136,7 @@ TEST(Unrest, PullLeadsWhereTheSolutionGoes) {
 // Where the noise is white and the motion as the prior has it, the errors are least where the prior
 // is true.
 TEST(Unrest, FindsThatOfTheMotion) {
-  for (const double wrong : {0.04, 1.0, 25.0}) {
+  for (const double wrong : {0.04, 1.0, 5.0}) {
     for (unsigned seed = 1; seed <= 3; ++seed) {
       const Eigen::Vector2d logs = learnt(Vector6d::Constant(wrong * kUnrest), seed);
       EXPECT_LT(logs.cwiseAbs().maxCoeff(), std::log(2.5)) << "begun at " << wrong;
@@ -149,17 +150,39 @@ TEST(Unrest, LearnsEachKindAloneAndStaysInBounds) {
   by_unrest.col(0) << 1e-3, -1e-3, 0.0, 0.0, 0.0, 0.01;
   by_unrest.col(1) << 1e-3, 0.0, 0.0, 0.0, 0.01, 0.0;  // the height does not follow
   Unrest unrest(usual);
-  unrest.learn(six(0.0, 0.0, 0.01), by_unrest);
+  unrest.learn(six(0.0, 0.0, 0.01), by_unrest, Surprise::Zero());
   EXPECT_EQ(unrest.density(), usual);
   Vector6d correction = six(0.0, 0.02, 0.01);
   correction[0] = 1e-4;
   correction[1] = -1e-4;
-  for (int scan = 0; scan < 200; ++scan) unrest.learn(correction, by_unrest);
+  for (int scan = 0; scan < 200; ++scan) unrest.learn(correction, by_unrest, Surprise::Zero());
   EXPECT_NEAR(std::log(unrest.density()[0] / usual[0]), 4.0, 1e-9);
   EXPECT_EQ(unrest.density()[1], unrest.density()[0]);
   EXPECT_EQ(unrest.density().tail<4>(), usual.tail<4>());
-  for (int scan = 0; scan < 200; ++scan) unrest.learn(-correction, by_unrest);
-  EXPECT_NEAR(std::log(unrest.density()[0] / usual[0]), -4.0, 1e-9);
+  for (int scan = 0; scan < 200; ++scan) unrest.learn(-correction, by_unrest, Surprise::Zero());
+  EXPECT_NEAR(std::log(unrest.density()[0] / usual[0]), -2.0, 1e-9);
+}
+
+TEST(Unrest, ASurpriseIsBelievedAtOnce) {
+  Prior prior;
+  prior.acceleration_density = six(0.3, 3.0, 0.03);
+  // A constant acceleration a over dt departs by a dt^2/2 and a dt: a^2 dt / q, over two numbers.
+  const double a = 20.0, dt_s = kSpan_s / kSegments;
+  Unknowns x = Unknowns::Zero(kSize);
+  for (int k = 1; k <= kSegments; ++k) {
+    const double t_s = k * dt_s;
+    x[kKnotSize * k + 5] = 0.5 * a * t_s * t_s;
+    x[kKnotSize * k + 11] = a * t_s;
+  }
+  const Surprise surprise = surprise_of(prior, kSegments, x);
+  EXPECT_EQ(surprise[0], 0.0);
+  EXPECT_NEAR(surprise[1], a * a * dt_s / 3.0 / 2.0, 1e-9);
+  const Prior loose = loosened(prior, surprise);
+  EXPECT_EQ(loose.acceleration_density.head<5>(), prior.acceleration_density.head<5>());
+  EXPECT_NEAR(surprise_of(loose, kSegments, x)[1], 1.0, 1e-9);
+  Unrest unrest(prior.acceleration_density);
+  unrest.learn(Vector6d::Zero(), EndByUnrest::Zero(), surprise);
+  EXPECT_NEAR(unrest.density()[5], loose.acceleration_density[5], 1e-9);
 }
 
 }  // namespace
