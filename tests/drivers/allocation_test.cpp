@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <new>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 namespace {
@@ -98,7 +99,8 @@ class Allocation : public testing::TestWithParam<Case> {};
 TEST_P(Allocation, NoneAfterTheFirstRevolution) {
   SensorConfig config;
   config.returns = GetParam().returns;
-  config.calibration_file = testing::TempDir() + "/allocation.yaml";
+  config.calibration_file =
+      testing::TempDir() + "/allocation_" + std::to_string(getpid()) + ".yaml";
   ASSERT_TRUE(store_calibration(config.calibration_file, test::sample_calibration(true)));
   EXPECT_EQ(allocations_after_first_revolution(GetParam().packets(), config), 0U);
 }
