@@ -2,12 +2,8 @@
 
 #include <Eigen/LU>
 
-#include <algorithm>
-
 namespace lilo::standard {
 namespace {
-
-using Knot = Eigen::Matrix<double, kKnotSize, 1>;
 
 /// d(k+1) = Phi d(k): the deviation moves on at its rate.
 KnotInformation transition(double dt_s) {
@@ -16,72 +12,77 @@ KnotInformation transition(double dt_s) {
   return phi;
 }
 
+/// What is believed of the change from each knot to the next.
+struct Step {
+  KnotInformation phi, W;
+
+  Step(const Prior& prior, int segments)
+      : phi(transition(prior.span_s / segments)),
+        W(process_information(prior.acceleration_density, prior.span_s / segments)) {}
+
+  /// By how much the knot that begins at unknown `i` fails to lead to the next one.
+  [[nodiscard]] Knot error(const Unknowns& x, int i) const {
+    return x.segment<kKnotSize>(i + kKnotSize) - phi * x.segment<kKnotSize>(i);
+  }
+};
+
 }  // namespace
 
 void add_prior(const Prior& prior, int segments, const Unknowns& x, NormalMatrix& H, Unknowns& b) {
   H.topLeftCorner<kKnotSize, kKnotSize>() += prior.begin_information;
   b.head<kKnotSize>() -= prior.begin_information * (x.head<kKnotSize>() - prior.begin_mean);
-  const double dt_s = prior.span_s / segments;
-  const KnotInformation phi = transition(dt_s);
-  const KnotInformation W = process_information(prior.acceleration_density, dt_s);
-  const KnotInformation Wphi = W * phi;
+  const Step step(prior, segments);
+  const KnotInformation Wphi = step.W * step.phi;
   for (int k = 0; k < segments; ++k) {
     const int i = kKnotSize * k, j = i + kKnotSize;
-    const Knot e = x.segment<kKnotSize>(j) - phi * x.segment<kKnotSize>(i);
-    H.block<kKnotSize, kKnotSize>(i, i) += phi.transpose() * Wphi;
+    const Knot e = step.error(x, i);
+    H.block<kKnotSize, kKnotSize>(i, i) += step.phi.transpose() * Wphi;
     H.block<kKnotSize, kKnotSize>(i, j) -= Wphi.transpose();
     H.block<kKnotSize, kKnotSize>(j, i) -= Wphi;
-    H.block<kKnotSize, kKnotSize>(j, j) += W;
+    H.block<kKnotSize, kKnotSize>(j, j) += step.W;
     b.segment<kKnotSize>(i) += Wphi.transpose() * e;
-    b.segment<kKnotSize>(j) -= W * e;
+    b.segment<kKnotSize>(j) -= step.W * e;
   }
 }
 
-Surprise surprise_of(const Prior& prior, int segments, const Unknowns& x) {
-  const double dt_s = prior.span_s / segments;
-  const KnotInformation phi = transition(dt_s);
-  const KnotInformation W = process_information(prior.acceleration_density, dt_s);
-  Surprise squares = Surprise::Zero(), count = Surprise::Zero();
+Eigen::Matrix<double, 6, kUnrests> unrest_axes() {
+  Eigen::Matrix<double, 6, kUnrests> axes;
+  axes.col(0) << 1, 1, 0, 0, 0, 0;
+  axes.col(1) << 0, 0, 0, 0, 0, 1;
+  return axes;
+}
+
+PerUnrest surprise_of(const Prior& prior, int segments, const Unknowns& x) {
+  const Step step(prior, segments);
+  Vector6d squares = Vector6d::Zero();
   for (int k = 0; k < segments; ++k) {
-    const int i = kKnotSize * k;
-    const Knot e = x.segment<kKnotSize>(i + kKnotSize) - phi * x.segment<kKnotSize>(i);
-    const Knot eWe = e.cwiseProduct(W * e);
-    for (int axis = 0; axis < 6; ++axis) {
-      const int unrest = kUnrestOf[static_cast<std::size_t>(axis)];
-      if (unrest < 0) continue;
-      squares[unrest] += eWe[axis] + eWe[axis + 6];
-      count[unrest] += 2.0;
-    }
+    const Knot e = step.error(x, kKnotSize * k);
+    const Knot eWe = e.cwiseProduct(step.W * e);
+    squares += eWe.head<6>() + eWe.tail<6>();
   }
-  return squares.cwiseQuotient(count);
+  const Eigen::Matrix<double, 6, kUnrests> axes = unrest_axes();
+  const PerUnrest count = 2.0 * segments * axes.colwise().sum();
+  return (axes.transpose() * squares).cwiseQuotient(count);
 }
 
-Prior loosened(Prior prior, const Surprise& surprise) {
-  for (int axis = 0; axis < 6; ++axis) {
-    const int unrest = kUnrestOf[static_cast<std::size_t>(axis)];
-    if (unrest >= 0) prior.acceleration_density[axis] *= std::max(1.0, surprise[unrest]);
-  }
+Prior loosened(Prior prior, const PerUnrest& surprise) {
+  const PerUnrest more = surprise.cwiseMax(1.0) - PerUnrest::Ones();
+  prior.acceleration_density.array() *= 1.0 + (unrest_axes() * more).array();
   return prior;
 }
 
 UnrestPull pull_of_unrest(const Prior& prior, int segments, const Unknowns& x) {
   UnrestPull pull = UnrestPull::Zero(x.size(), kUnrests);
-  const double dt_s = prior.span_s / segments;
-  const KnotInformation phi = transition(dt_s);
-  const KnotInformation W = process_information(prior.acceleration_density, dt_s);
+  const Step step(prior, segments);
+  using OfKnot = Eigen::Matrix<double, kKnotSize, kUnrests>;  // of d and of its rate
+  const OfKnot axes = unrest_axes().replicate<2, 1>();
   for (int k = 0; k < segments; ++k) {
     const int i = kKnotSize * k, j = i + kKnotSize;
     // W goes with the inverse of the density, so what it adds to the right-hand side is taken away.
-    const Knot We = W * (x.segment<kKnotSize>(j) - phi * x.segment<kKnotSize>(i));
-    for (int axis = 0; axis < 6; ++axis) {
-      const int unrest = kUnrestOf[static_cast<std::size_t>(axis)];
-      if (unrest < 0) continue;
-      Knot of_axis = Knot::Zero();
-      of_axis[axis] = We[axis];
-      of_axis[axis + 6] = We[axis + 6];
-      pull.block<kKnotSize, 1>(i, unrest) -= phi.transpose() * of_axis;
-      pull.block<kKnotSize, 1>(j, unrest) += of_axis;
-    }
+    const Knot We = step.W * step.error(x, i);
+    const OfKnot by_kind = We.asDiagonal() * axes;
+    pull.middleRows<kKnotSize>(i) -= step.phi.transpose() * by_kind;
+    pull.middleRows<kKnotSize>(j) += by_kind;
   }
   return pull;
 }

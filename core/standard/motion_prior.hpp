@@ -5,8 +5,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
-
 /// What is believed of a scan's motion before its returns are looked at: that it goes on from the
 /// last scan's, with white noise on acceleration (Barfoot, State Estimation for Robotics, ch. 11).
 namespace lilo::standard {
@@ -19,30 +17,31 @@ struct Prior {
   Pose T_begin;
   Twist twist;
   double span_s = 0.1;
-  Eigen::Matrix<double, kKnotSize, 1> begin_mean =
-      Eigen::Matrix<double, kKnotSize, 1>::Zero();  ///< of the first knot
+  Knot begin_mean = Knot::Zero();  ///< of the first knot
   KnotInformation begin_information = KnotInformation::Identity();
   /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
   Vector6d acceleration_density = Vector6d::Ones();
 };
 
 /// The kinds of unrest that differ from vehicle to vehicle and road to road: rocking (roll and
-/// pitch), heaving (height). Which of them moves an axis (rotation, translation); -1: neither.
+/// pitch), heaving (height).
 inline constexpr int kUnrests = 2;
-inline constexpr std::array<int, 6> kUnrestOf{0, 0, -1, -1, -1, 1};
+using PerUnrest = Eigen::Matrix<double, kUnrests, 1>;
 using EndByUnrest = Eigen::Matrix<double, 6, kUnrests>;
-using Surprise = Eigen::Matrix<double, kUnrests, 1>;
 using UnrestPull = Eigen::Matrix<double, Eigen::Dynamic, kUnrests, 0, kMaxUnknowns, kUnrests>;
+
+/// 1 where a kind of unrest moves an axis (rotation, translation), else 0.
+Eigen::Matrix<double, 6, kUnrests> unrest_axes();
 
 /// Adds the prior to the normal equations H step = b of the deviation `x`.
 void add_prior(const Prior& prior, int segments, const Unknowns& x, NormalMatrix& H, Unknowns& b);
 
 /// Mean square, in sigmas of the prior, of how the motion `x` departs from a constant velocity, by
 /// kind of unrest. Where the prior is right it is 1, or less: data count for less than they say.
-Surprise surprise_of(const Prior& prior, int segments, const Unknowns& x);
+PerUnrest surprise_of(const Prior& prior, int segments, const Unknowns& x);
 
 /// The prior with so much more unrest that such a motion is no surprise: its tails are heavy.
-Prior loosened(Prior prior, const Surprise& surprise);
+Prior loosened(Prior prior, const PerUnrest& surprise);
 
 /// How the right-hand side at the solution `x` changes by the logarithm of each unrest's density:
 /// the more of it is believed in, the weaker the pull to a constant velocity. Solved by the normal

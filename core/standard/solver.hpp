@@ -41,7 +41,7 @@ struct SolverConfig {
 struct Solution {
   Trajectory trajectory;
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
-  Surprise surprise = Surprise::Zero();                       ///< what the prior had not expected
+  PerUnrest surprise = PerUnrest::Zero();                     ///< what the prior had not expected
   EndByUnrest end_by_unrest = EndByUnrest::Zero();            ///< d end / d log density
   /// Of the pose, from the scan alone, as though its residuals were independent.
   Matrix6d data_information = Matrix6d::Zero();

@@ -112,7 +112,7 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
 KnotInformation Tracker::first_information() {
   constexpr double kPose = 1e-4;  // m, rad
   constexpr double kSpeed_mps = 20.0, kClimb_mps = 0.5, kYaw_radps = 0.5, kTilt_radps = 0.1;
-  Eigen::Matrix<double, kKnotSize, 1> sigma;
+  Knot sigma;
   sigma << Vector6d::Constant(kPose), kTilt_radps, kTilt_radps, kYaw_radps, kSpeed_mps, kSpeed_mps,
       kClimb_mps;
   return sigma.cwiseAbs2().cwiseInverse().asDiagonal();

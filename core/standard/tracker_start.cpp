@@ -86,7 +86,7 @@ void Tracker::believe(const Start& start, Prior& prior) {
   const double weight = 1.0 / (start.doubt_mps * start.doubt_mps);
   KnotInformation both = prior.begin_information;
   both.diagonal().segment<2>(9).array() += weight;
-  Eigen::Matrix<double, kKnotSize, 1> pull = prior.begin_information * prior.begin_mean;
+  Knot pull = prior.begin_information * prior.begin_mean;
   pull.segment<2>(9) += weight * (start.believed_mps - predicted_mps).head<2>();
   prior.begin_mean = both.ldlt().solve(pull);
   prior.begin_information = both;

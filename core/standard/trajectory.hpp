@@ -20,6 +20,7 @@ inline constexpr int kMaxSegments = 3;
 inline constexpr int kKnotSize = 12;  ///< d (rotation, translation), then its rate per second
 inline constexpr int kMaxUnknowns = kKnotSize * (kMaxSegments + 1);
 using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxUnknowns, 1>;
+using Knot = Eigen::Matrix<double, kKnotSize, 1>;
 using KnotInformation = Eigen::Matrix<double, kKnotSize, kKnotSize>;
 
 struct Trajectory {

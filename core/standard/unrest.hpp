@@ -2,12 +2,10 @@
 
 #include "core/standard/motion_prior.hpp"
 
-#include <array>
-
 namespace lilo::standard {
 
 /// What the ground does to the vehicle, learnt on the way: power densities of how it rocks and
-/// heaves. Between a car on asphalt and a stiff robot on cobbles lies a factor of a thousand.
+/// heaves. Between a car on asphalt and a stiff robot on cobbles lies a factor of hundreds.
 /// Believed too calm, the end of every scan lags behind; too wild, it follows each error of the few
 /// returns that saw it.
 ///
@@ -16,28 +14,26 @@ namespace lilo::standard {
 /// a step down the slope of the squared correction, which asks nothing of the noise or of the
 /// spectrum of the motion. Calm is believed slowly and never far, a surprise at once: a robot that
 /// stood for a minute sets off on cobbles. What the driver does, yaw and speed, is left as
-/// configured: learnt the same way, a straight road made yaw too stiff for the bend at its end.
+/// configured: learning it the same way made headings and country roads worse.
 class Unrest {
  public:
   /// `usual`: densities of all axes, kept but for those of the unrest, where learning begins.
-  explicit Unrest(const Vector6d& usual) : usual_(usual), density_(usual) {}
+  explicit Unrest(const Vector6d& usual) : usual_(usual) {}
 
   /// `correction`: by how much a scan moves the end of the one before; `end_by_unrest`: by how much
   /// that end goes with the logarithm of each density. Both rotation, translation (rad, m).
   /// `surprise`: the scan's own.
   void learn(const Vector6d& correction, const EndByUnrest& end_by_unrest,
-             const Surprise& surprise);
+             const PerUnrest& surprise);
 
   /// Rotation (rad^2/s^3), translation (m^2/s^3).
-  [[nodiscard]] const Vector6d& density() const { return density_; }
+  [[nodiscard]] Vector6d density() const;
 
  private:
-  struct Kind {
-    double log_ratio = 0.0;                   // to the usual density
-    double correction2 = 0.0, change2 = 0.0;  // squares, as of late
-  };
-  Vector6d usual_, density_;
-  std::array<Kind, kUnrests> kinds_;
+  Vector6d usual_;
+  PerUnrest log_ratio_ = PerUnrest::Zero();  // to the usual density
+  // Squares, as of late.
+  PerUnrest correction2_ = PerUnrest::Zero(), change2_ = PerUnrest::Zero();
 };
 
 }  // namespace lilo::standard

@@ -9,8 +9,6 @@
 namespace lilo::standard {
 namespace {
 
-using Knot = Eigen::Matrix<double, kKnotSize, 1>;
-
 constexpr int kSegments = 2;
 constexpr int kSize = kKnotSize * (kSegments + 1);
 constexpr double kSpan_s = 0.1;
@@ -73,15 +71,20 @@ Equations looks_at(Motion& motion) {
   return data;
 }
 
-Unknowns solution(const Prior& prior, Equations all) {
-  add_prior(prior, kSegments, Unknowns::Zero(kSize), all.H, all.b);
-  return all.H.ldlt().solve(all.b);
-}
+struct Solved {
+  Unknowns x;
+  EndByUnrest end_by_unrest;
+  KnotInformation end_information;
+};
 
-EndByUnrest end_by_unrest(const Prior& prior, Equations all, const Unknowns& x) {
-  add_prior(prior, kSegments, x, all.H, all.b);
-  const UnrestPull dx = all.H.ldlt().solve(pull_of_unrest(prior, kSegments, x));
-  return dx.middleRows<6>(kSize - kKnotSize);
+Solved solve(const Prior& prior, Equations all) {
+  add_prior(prior, kSegments, Unknowns::Zero(kSize), all.H, all.b);
+  const Eigen::LDLT<NormalMatrix> factors(all.H);
+  const Unknowns x = factors.solve(all.b);
+  const UnrestPull by_unrest = factors.solve(pull_of_unrest(prior, kSegments, x));
+  const NormalMatrix covariance = factors.solve(NormalMatrix::Identity(kSize, kSize));
+  return {x, by_unrest.middleRows<6>(kSize - kKnotSize),
+          covariance.bottomRightCorner<kKnotSize, kKnotSize>().inverse()};
 }
 
 /// Follows 400 scans and learns; the mean logarithm of what is believed over what is, by kind, in
@@ -95,18 +98,12 @@ Eigen::Vector2d learnt(const Vector6d& usual, unsigned seed) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (int scan = 0; scan < 400; ++scan) {
     prior.acceleration_density = unrest.density();
-    const Equations data = looks_at(motion);
-    const Unknowns x = solution(prior, data);
-    if (scan > 0)
-      unrest.learn((x.head<kKnotSize>() - prior.begin_mean).head<6>(), by_unrest, Surprise::Zero());
-    by_unrest = end_by_unrest(prior, data, x);
-    Equations all = data;
-    add_prior(prior, kSegments, x, all.H, all.b);
-    const KnotInformation covariance = all.H.ldlt()
-                                           .solve(NormalMatrix::Identity(kSize, kSize))
-                                           .bottomRightCorner<kKnotSize, kKnotSize>();
-    prior.begin_information = covariance.inverse();
-    prior.begin_mean = x.tail<kKnotSize>();
+    const Solved solved = solve(prior, looks_at(motion));
+    const Knot correction = solved.x.head<kKnotSize>() - prior.begin_mean;
+    if (scan > 0) unrest.learn(correction.head<6>(), by_unrest, PerUnrest::Zero());
+    by_unrest = solved.end_by_unrest;
+    prior.begin_information = solved.end_information;
+    prior.begin_mean = solved.x.tail<kKnotSize>();
     if (scan < 100) continue;
     sum[0] += std::log(unrest.density()[0] / kUnrest) / 300.0;
     sum[1] += std::log(unrest.density()[5] / kUnrest) / 300.0;
@@ -120,16 +117,16 @@ TEST(Unrest, PullLeadsWhereTheSolutionGoes) {
   prior.begin_information = 1e4 * KnotInformation::Identity();
   prior.acceleration_density = six(0.02, 0.3, 0.1);
   const Equations data = looks_at(motion);
-  const EndByUnrest end = end_by_unrest(prior, data, solution(prior, data));
+  const Solved solved = solve(prior, data);
   constexpr double kStep = 1e-4;
   for (int kind = 0; kind < kUnrests; ++kind) {
     const double up = std::exp(kStep);
     Prior more = prior;
     more.acceleration_density = kind == 0 ? six(0.02 * up, 0.3, 0.1) : six(0.02, 0.3 * up, 0.1);
-    const Unknowns change = (solution(more, data) - solution(prior, data)) / kStep;
+    const Knot change = (solve(more, data).x - solved.x).tail<kKnotSize>() / kStep;
     EXPECT_GT(change.norm(), 1e-6);
-    EXPECT_LT((end.col(kind) - change.segment<6>(kSize - kKnotSize)).norm(),
-              1e-3 * end.col(kind).norm());
+    EXPECT_LT((solved.end_by_unrest.col(kind) - change.head<6>()).norm(),
+              1e-3 * solved.end_by_unrest.col(kind).norm());
   }
 }
 
@@ -150,16 +147,16 @@ TEST(Unrest, LearnsEachKindAloneAndStaysInBounds) {
   by_unrest.col(0) << 1e-3, -1e-3, 0.0, 0.0, 0.0, 0.01;
   by_unrest.col(1) << 1e-3, 0.0, 0.0, 0.0, 0.01, 0.0;  // the height does not follow
   Unrest unrest(usual);
-  unrest.learn(six(0.0, 0.0, 0.01), by_unrest, Surprise::Zero());
+  unrest.learn(six(0.0, 0.0, 0.01), by_unrest, PerUnrest::Zero());
   EXPECT_EQ(unrest.density(), usual);
   Vector6d correction = six(0.0, 0.02, 0.01);
   correction[0] = 1e-4;
   correction[1] = -1e-4;
-  for (int scan = 0; scan < 200; ++scan) unrest.learn(correction, by_unrest, Surprise::Zero());
+  for (int scan = 0; scan < 200; ++scan) unrest.learn(correction, by_unrest, PerUnrest::Zero());
   EXPECT_NEAR(std::log(unrest.density()[0] / usual[0]), 4.0, 1e-9);
   EXPECT_EQ(unrest.density()[1], unrest.density()[0]);
   EXPECT_EQ(unrest.density().tail<4>(), usual.tail<4>());
-  for (int scan = 0; scan < 200; ++scan) unrest.learn(-correction, by_unrest, Surprise::Zero());
+  for (int scan = 0; scan < 200; ++scan) unrest.learn(-correction, by_unrest, PerUnrest::Zero());
   EXPECT_NEAR(std::log(unrest.density()[0] / usual[0]), -2.0, 1e-9);
 }
 
@@ -174,7 +171,7 @@ TEST(Unrest, ASurpriseIsBelievedAtOnce) {
     x[kKnotSize * k + 5] = 0.5 * a * t_s * t_s;
     x[kKnotSize * k + 11] = a * t_s;
   }
-  const Surprise surprise = surprise_of(prior, kSegments, x);
+  const PerUnrest surprise = surprise_of(prior, kSegments, x);
   EXPECT_EQ(surprise[0], 0.0);
   EXPECT_NEAR(surprise[1], a * a * dt_s / 3.0 / 2.0, 1e-9);
   const Prior loose = loosened(prior, surprise);
