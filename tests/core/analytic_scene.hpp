@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <vector>
 
 /// Scenes whose every range has a closed form, for tests that need the truth.
@@ -110,6 +111,17 @@ inline Scan scan_of(const Scene& scene, const BeamTable& beams, int firings,
     }
   }
   return scan;
+}
+
+/// A range finder's noise, along each ray.
+inline void add_range_noise(Scan& scan, float sigma_m, std::mt19937& rng) {
+  std::normal_distribution<float> noise_m(0.0F, sigma_m);
+  for (Return& r : scan.returns) {
+    const float stretch = 1.0F + noise_m(rng) / std::hypot(r.x_m, r.y_m, r.z_m);
+    r.x_m *= stretch;
+    r.y_m *= stretch;
+    r.z_m *= stretch;
+  }
 }
 
 inline Scan still_scan_of(const Scene& scene, const BeamTable& beams, const Pose& T) {

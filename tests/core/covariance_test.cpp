@@ -27,7 +27,6 @@ struct End {
 
 End end_of(int run) {
   std::mt19937 rng(static_cast<unsigned>(run));
-  std::normal_distribution<float> noise(0.0F, 0.002F);
   Odometry odometry{OdometryConfig{}};
   Pose first, truth;
   Estimate last;
@@ -35,12 +34,7 @@ End end_of(int run) {
     Scan scan = test::scan_of(
         test::yard(), test::even_beams(16, -15.0, 15.0), 900,
         [&](double s) { return drive(0.1 * (k + s), run); }, static_cast<std::uint64_t>(k));
-    for (Return& r : scan.returns) {
-      const float stretch = 1.0F + noise(rng);  // 2 cm at 10 m
-      r.x_m *= stretch;
-      r.y_m *= stretch;
-      r.z_m *= stretch;
-    }
+    test::add_range_noise(scan, 0.02F, rng);
     last = odometry.process(scan);
     truth = drive(0.1 * (k + 1), run);
     if (k == 0) first = truth;

@@ -138,7 +138,6 @@ TEST(DefaultProfile, SetsOffOnCobblesAfterStandingStill) {
     return Pose{so3_exp({swing, -0.7 * swing, 0.0}), {since_s - 5.0, 0.0, 0.3 * swing}};
   };
   std::mt19937 rng(1);
-  std::normal_distribution<float> noise(0.0F, 0.002F);
   for (const BeamTable& beams : {k16, k64}) {
     Odometry odometry{OdometryConfig{}};
     int tracking = 0;
@@ -146,12 +145,7 @@ TEST(DefaultProfile, SetsOffOnCobblesAfterStandingStill) {
       Scan scan = test::scan_of(
           test::yard(), beams, 900, [&](double s) { return at(0.1 * (k + s)); },
           static_cast<std::uint64_t>(k));
-      for (Return& r : scan.returns) {
-        const float stretch = 1.0F + noise(rng);  // 2 cm at 10 m
-        r.x_m *= stretch;
-        r.y_m *= stretch;
-        r.z_m *= stretch;
-      }
+      test::add_range_noise(scan, 0.02F, rng);
       const Estimate e = odometry.process(scan);
       const Pose error = at(0.1 * (k + 1)).inverse() * at(0.1) * e.T_odom_sensor;
       EXPECT_LT(error.translation_m.norm(), 0.05) << beams.ring_count << " beams, scan " << k;

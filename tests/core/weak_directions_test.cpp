@@ -22,8 +22,7 @@ constexpr float kRangeNoise_m = 0.012F;
 /// Drives straight along x and returns the last estimate.
 Estimate drive_through(const test::Scene& scene) {
   Odometry odometry{OdometryConfig{}};
-  std::mt19937 random(1);
-  std::normal_distribution<float> noise_m(0.0F, kRangeNoise_m);
+  std::mt19937 rng(1);
   Estimate last;
   for (int k = 0; k < 20; ++k) {
     Scan scan = test::scan_of(
@@ -32,12 +31,7 @@ Estimate drive_through(const test::Scene& scene) {
           return Pose{Eigen::Quaterniond::Identity(), {0.05 * (k + s), 0.0, 0.0}};
         },
         static_cast<std::uint64_t>(k));
-    for (Return& r : scan.returns) {
-      const float stretch = 1.0F + noise_m(random) / std::hypot(r.x_m, r.y_m, r.z_m);
-      r.x_m *= stretch;
-      r.y_m *= stretch;
-      r.z_m *= stretch;
-    }
+    test::add_range_noise(scan, kRangeNoise_m, rng);
     last = odometry.process(scan);
   }
   return last;
