@@ -23,7 +23,7 @@ struct Return {
   std::uint8_t ring;       ///< beam, counted by elevation, 0 = lowest
   std::uint8_t intensity;  ///< as sent by the sensor; HDL-64E: with its focal correction
   ReturnKind kind;
-  std::uint8_t reserved = 0;
+  std::uint8_t reserved;
 };
 static_assert(sizeof(Return) == 24);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace lilo {
@@ -49,6 +50,7 @@ void Hdl64eDecoder::use_calibration(const Hdl64eCalibration& calibration) {
     return calibration.lasers[a].vert_rad < calibration.lasers[b].vert_rad;
   });
   beams_.ring_count = kLasers;
+  lasers_.largest_b_rad = 0.0F;
   step_m_ = static_cast<float>(calibration.distance_step_m);
   for (std::size_t ring = 0; ring < kLasers; ++ring) {
     const std::size_t i = by_elevation[ring];
@@ -77,7 +79,16 @@ void Hdl64eDecoder::use_calibration(const Hdl64eCalibration& calibration) {
     lasers_.max_intensity[i] = f(std::clamp(c.max_intensity, 0, 255));
     lasers_.min_steps[i] = std::max(1, steps(min_range_m_));
     lasers_.max_steps[i] = steps(max_range_m_);
-    lasers_.ring[i] = static_cast<std::uint8_t>(ring);
+    lasers_.ring[i] = static_cast<std::int32_t>(ring);
+    lasers_.largest_b_rad = std::max(lasers_.largest_b_rad, std::abs(lasers_.b_rad[i]));
+  }
+}
+
+void Hdl64eDecoder::use_table(const FiringTable* table) {
+  table_ = table;
+  if (table == nullptr) return;
+  for (std::size_t k = 0; k < kBank; ++k) {
+    laser_ns_[k] = static_cast<std::int32_t>(k / 4) * table->group_ns + table->laser_ns[k % 4];
   }
 }
 
@@ -126,22 +137,19 @@ double Hdl64eDecoder::packet_period_ns() const {
 
 Hdl64eDecoder::Bank Hdl64eDecoder::project(int block) const {
   const std::byte* bytes = wire::block(packet_, block);
-  Bank bank;
-  bank.first_laser = block % 2 == 0 ? 0 : kBank;
-  std::array<float, kBank> echo;
-  const std::byte* channel = bytes + wire::kBlockHeaderBytes;
-  for (std::size_t k = 0; k < kBank; ++k, channel += wire::kChannelBytes) {
-    bank.steps[k] = wire::u16(channel);
-    echo[k] = static_cast<float>(wire::u8(channel + 2));
-  }
+  const std::size_t first_laser = block % 2 == 0 ? 0 : kBank;
+  const auto raw_channels = channels<kBank>(bytes + wire::kBlockHeaderBytes);
   const AzimuthTable::Entry head = azimuths_[wire::u16(bytes + 2)];
   const float step_m = step_m_;
+  Bank bank;
   // No branches here, and nothing the compiler may not compute for four lasers at once.
   for (std::size_t k = 0; k < kBank; ++k) {
-    const std::size_t i = bank.first_laser + k;
+    const std::size_t i = first_laser + k;
+    const std::int32_t steps = raw_channels[k] & 0xFFFF;
+    const auto echo = static_cast<float>(raw_channels[k] >> 16);
     const float cos_a = head.cos * lasers_.cos_b[i] + head.sin * lasers_.sin_b[i];
     const float sin_a = head.sin * lasers_.cos_b[i] - head.cos * lasers_.sin_b[i];
-    const float raw = static_cast<float>(bank.steps[k]) * step_m;
+    const float raw = static_cast<float>(steps) * step_m;
     const float d = raw + lasers_.dist_m[i];
     const float flat_x = lasers_.cos_w[i] * sin_a, flat_y = lasers_.cos_w[i] * cos_a;
     const float side = d * flat_x - lasers_.horizontal_m[i] * cos_a;   // the manual's x
@@ -151,29 +159,19 @@ Hdl64eDecoder::Bank Hdl64eDecoder::project(int block) const {
     const float focus =
         lasers_.slope[i] * std::abs(lasers_.focal[i] - square(1.0F - raw / kFocalRangeM));
     const float intensity =
-        std::min(std::max(echo[k] + focus, lasers_.min_intensity[i]), lasers_.max_intensity[i]);
+        std::min(std::max(echo + focus, lasers_.min_intensity[i]), lasers_.max_intensity[i]);
     bank.x_m[k] = ahead + more_y * flat_y;
     bank.y_m[k] = -(side + more_x * flat_x);
     bank.z_m[k] = (d + 0.5F * (more_x + more_y)) * lasers_.sin_w[i] + lasers_.vertical_m[i];
-    bank.azimuth_rad[k] = wrap_rad(head.ccw_rad + lasers_.b_rad[i]);
-    bank.intensity[k] = static_cast<std::int32_t>(intensity);
-    bank.in_range[k] = static_cast<std::int32_t>(bank.steps[k] >= lasers_.min_steps[i]) &
-                       static_cast<std::int32_t>(bank.steps[k] <= lasers_.max_steps[i]);
+    bank.azimuth_rad[k] = head.ccw_rad + lasers_.b_rad[i];
+    bank.ring_and_intensity[k] = lasers_.ring[i] | static_cast<std::int32_t>(intensity) << 8;
+    bank.steps[k] = steps;
+    bank.in_range[k] = static_cast<std::int32_t>(steps >= lasers_.min_steps[i]) &
+                       static_cast<std::int32_t>(steps <= lasers_.max_steps[i]);
   }
+  if (std::abs(head.ccw_rad) < std::numbers::pi_v<float> - lasers_.largest_b_rad) return bank;
+  for (float& azimuth_rad : bank.azimuth_rad) azimuth_rad = wrap_rad(azimuth_rad);
   return bank;
-}
-
-Return Hdl64eDecoder::at(const Bank& bank, std::size_t k, std::int32_t t_ns,
-                         ReturnKind kind) const {
-  return {
-      .x_m = bank.x_m[k],
-      .y_m = bank.y_m[k],
-      .z_m = bank.z_m[k],
-      .azimuth_rad = bank.azimuth_rad[k],
-      .t_ns = t_ns + static_cast<std::int32_t>(k / 4) * table_->group_ns + table_->laser_ns[k % 4],
-      .ring = lasers_.ring[bank.first_laser + k],
-      .intensity = static_cast<std::uint8_t>(bank.intensity[k]),
-      .kind = kind};
 }
 
 void Hdl64eDecoder::append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const {
@@ -187,15 +185,13 @@ void Hdl64eDecoder::append(std::size_t column, std::int32_t t_ns, std::vector<Re
 // Upper and lower laser of one number fire together, so they alternate in the scan.
 void Hdl64eDecoder::append_single(int pair, std::int32_t t_ns, std::vector<Return>& out) const {
   const Bank upper = project(2 * pair), lower = project(2 * pair + 1);
-  std::array<Return, 2 * kBank> kept;
-  std::size_t count = 0;
+  Kept<2 * kBank> kept;
   for (std::size_t k = 0; k < kBank; ++k) {
-    for (const Bank* bank : {&upper, &lower}) {
-      kept[count] = at(*bank, k, t_ns, ReturnKind::strongest);
-      count += static_cast<std::size_t>(bank->in_range[k]);
-    }
+    const std::int32_t at_ns = t_ns + laser_ns_[k];
+    kept.add(upper, k, at_ns, ReturnKind::strongest, upper.in_range[k]);
+    kept.add(lower, k, at_ns, ReturnKind::strongest, lower.in_range[k]);
   }
-  out.insert(out.end(), kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count));
+  kept.append_to(out);
 }
 
 // No manual page says which pair is the strongest and which the last; the order here is that of
@@ -203,20 +199,20 @@ void Hdl64eDecoder::append_single(int pair, std::int32_t t_ns, std::vector<Retur
 void Hdl64eDecoder::append_dual(int shot, std::int32_t t_ns, std::vector<Return>& out) const {
   const std::array<Bank, 2> first{project(4 * shot), project(4 * shot + 1)};
   const std::array<Bank, 2> second{project(4 * shot + 2), project(4 * shot + 3)};
-  std::array<Return, 4 * kBank> kept;
-  std::size_t count = 0;
+  Kept<4 * kBank> kept;
   for (std::size_t k = 0; k < kBank; ++k) {
+    const std::int32_t at_ns = t_ns + laser_ns_[k];
     for (std::size_t bank = 0; bank < 2; ++bank) {
       const bool same = first[bank].steps[k] == second[bank].steps[k];
       const bool want_first = same || choice_ != ReturnChoice::last;
       const bool want_second = !same && choice_ != ReturnChoice::strongest;
-      kept[count] = at(first[bank], k, t_ns, same ? ReturnKind::both : ReturnKind::strongest);
-      count += want_first && first[bank].in_range[k] != 0 ? 1U : 0U;
-      kept[count] = at(second[bank], k, t_ns, ReturnKind::last);
-      count += want_second && second[bank].in_range[k] != 0 ? 1U : 0U;
+      kept.add(first[bank], k, at_ns, same ? ReturnKind::both : ReturnKind::strongest,
+               want_first ? first[bank].in_range[k] : 0);
+      kept.add(second[bank], k, at_ns, ReturnKind::last,
+               want_second ? second[bank].in_range[k] : 0);
     }
   }
-  out.insert(out.end(), kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count));
+  kept.append_to(out);
 }
 
 }  // namespace lilo

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "drivers/azimuth.hpp"
+#include "drivers/firing.hpp"
 #include "drivers/hdl64e_calibration.hpp"
 #include "drivers/packet_decoder.hpp"
 #include "drivers/sensor_config.hpp"
@@ -38,7 +39,7 @@ class Hdl64eDecoder final : public PacketDecoder {
 
   void use_calibration(const Hdl64eCalibration& calibration);
   /// The table append() works with; none before use_table().
-  void use_table(const FiringTable* table) { table_ = table; }
+  void use_table(const FiringTable* table);
 
   bool load(DataPacket packet) override;
   [[nodiscard]] std::span<const Column> columns() const override {
@@ -68,18 +69,13 @@ class Hdl64eDecoder final : public PacketDecoder {
     Floats dist_m, near_x, near_y, horizontal_m, vertical_m;
     Floats focal, slope, min_intensity, max_intensity;
     Ints min_steps, max_steps;
-    std::array<std::uint8_t, Hdl64eCalibration::kLasers> ring;
+    Ints ring;
+    float largest_b_rad;
   };
-  struct Bank {  // one block's 32 lasers
-    std::size_t first_laser;
-    std::array<std::int32_t, kBank> steps, intensity, in_range;
-    std::array<float, kBank> x_m, y_m, z_m, azimuth_rad;
-  };
+  using Bank = Firing<kBank>;  // one block's lasers
 
   [[nodiscard]] bool find_dual(const std::byte* packet) const;
   [[nodiscard]] Bank project(int block) const;
-  [[nodiscard]] Return at(const Bank& bank, std::size_t k, std::int32_t t_ns,
-                          ReturnKind kind) const;
   void append_single(int pair, std::int32_t t_ns, std::vector<Return>& out) const;
   void append_dual(int shot, std::int32_t t_ns, std::vector<Return>& out) const;
 
@@ -90,6 +86,7 @@ class Hdl64eDecoder final : public PacketDecoder {
   Lasers lasers_{};
   BeamTable beams_;
   const FiringTable* table_ = nullptr;
+  std::array<std::int32_t, kBank> laser_ns_{};  // from the shot's first
 
   const std::byte* packet_ = nullptr;
   bool dual_ = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace lilo {
@@ -47,10 +48,11 @@ void Vlp16Decoder::set_product(std::uint8_t product_id) {
   for (std::size_t ring = 0; ring < kLasers; ++ring) {
     const std::size_t laser = by_elevation[ring];
     const double w = deg[laser] * std::numbers::pi / 180.0;
-    ring_[laser] = static_cast<std::uint8_t>(ring);
     beams_.elevation_rad[ring] = static_cast<float>(w);
-    beam_[laser] = {static_cast<float>(std::cos(w)), static_cast<float>(std::sin(w)),
-                    static_cast<float>(kOriginRadiusM * std::tan(-w))};
+    beam_.ring[laser] = static_cast<std::int32_t>(ring);
+    beam_.cos_elevation[laser] = static_cast<float>(std::cos(w));
+    beam_.sin_elevation[laser] = static_cast<float>(std::sin(w));
+    beam_.origin_z_m[laser] = static_cast<float>(kOriginRadiusM * std::tan(-w));
   }
 }
 
@@ -105,6 +107,7 @@ void Vlp16Decoder::measure_turn(const std::byte* packet) {
     turn_.cos[i] = 1.0F - a * a * (0.5F - a * a / 24.0F);
     turn_.sin[i] = a - a * a * a * (1.0F / 6.0F - a * a / 120.0F);
   }
+  turn_.largest_rad = std::abs(turn_.rad.back());
 }
 
 // A sensor that fires in a part of its turn goes on filling the packet where the part begins again:
@@ -155,87 +158,70 @@ double Vlp16Decoder::packet_period_ns() const {
 void Vlp16Decoder::append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const {
   const int shot = static_cast<int>(column) / 2;
   const int sequence = static_cast<int>(column) % 2;
-  std::array<Return, kLasers> first;
-  std::array<Echo, kLasers> first_echo;
-  if (mode_ != ReturnMode::dual) {
-    const ReturnKind kind = mode_ == ReturnMode::last ? ReturnKind::last : ReturnKind::strongest;
-    project(wire::block(packet_, shot), sequence, t_ns, kind, first, first_echo);
-    keep_in_range(first, first_echo, out);
-    return;
+  if (mode_ == ReturnMode::dual) {
+    append_dual(shot, sequence, t_ns, out);
+  } else {
+    append_single(shot, sequence, t_ns, out);
   }
-  // Even blocks hold the last echo, odd ones the strongest, or the second strongest where the last
-  // is the strongest; equal ones are one echo (manual, 9.3.1.5).
-  std::array<Return, kLasers> second;
-  std::array<Echo, kLasers> second_echo;
-  project(wire::block(packet_, 2 * shot), sequence, t_ns, ReturnKind::last, first, first_echo);
-  project(wire::block(packet_, 2 * shot + 1), sequence, t_ns, ReturnKind::strongest, second,
-          second_echo);
-  merge_dual(first, first_echo, second, second_echo, out);
 }
 
-void Vlp16Decoder::project(const std::byte* block, int sequence, std::int32_t t_ns, ReturnKind kind,
-                           std::array<Return, kLasers>& returns,
-                           std::array<Echo, kLasers>& echoes) const {
-  const AzimuthTable::Entry& base = azimuths_[wire::u16(block + 2)];
-  const auto turn_offset = static_cast<std::size_t>(sequence) * kLasers;
-  const std::byte* channel = block + wire::kBlockHeaderBytes + turn_offset * wire::kChannelBytes;
-  for (std::size_t k = 0; k < kLasers; ++k, channel += wire::kChannelBytes) {
-    const float turn_cos = turn_.cos[turn_offset + k], turn_sin = turn_.sin[turn_offset + k];
+Vlp16Decoder::Sequence Vlp16Decoder::project(int block, int sequence) const {
+  const std::byte* bytes = wire::block(packet_, block);
+  const auto first = static_cast<std::size_t>(sequence) * kLasers;
+  const auto raw = channels<kLasers>(bytes + wire::kBlockHeaderBytes + first * wire::kChannelBytes);
+  const AzimuthTable::Entry base = azimuths_[wire::u16(bytes + 2)];
+  Sequence seen;
+  const std::int32_t min_steps = min_steps_, max_steps = max_steps_;
+  // No branches here, and nothing the compiler may not compute for four lasers at once.
+  for (std::size_t k = 0; k < kLasers; ++k) {
+    const float turn_cos = turn_.cos[first + k], turn_sin = turn_.sin[first + k];
     const float cos_a = base.cos * turn_cos - base.sin * turn_sin;
     const float sin_a = base.sin * turn_cos + base.cos * turn_sin;
-    const std::uint16_t steps = wire::u16(channel);
+    const std::int32_t steps = raw[k] & 0xFFFF;
     const float range = static_cast<float>(steps) * wire::kMetresPerStep;
-    const float horizontal = range * beam_[k].cos_elevation;
-    const float ccw = base.ccw_rad - turn_.rad[turn_offset + k];
-    returns[k] = {.x_m = horizontal * cos_a,
-                  .y_m = -horizontal * sin_a,
-                  .z_m = range * beam_[k].sin_elevation + beam_[k].origin_z_m,
-                  .azimuth_rad = wrap_rad(ccw),
-                  .t_ns = t_ns + static_cast<std::int32_t>(k) * kLaserNs,
-                  .ring = ring_[k],
-                  .intensity = wire::u8(channel + 2),
-                  .kind = kind};
-    echoes[k] = {steps, steps >= min_steps_ && steps <= max_steps_};
+    const float horizontal = range * beam_.cos_elevation[k];
+    seen.x_m[k] = horizontal * cos_a;
+    seen.y_m[k] = -horizontal * sin_a;
+    seen.z_m[k] = range * beam_.sin_elevation[k] + beam_.origin_z_m[k];
+    seen.azimuth_rad[k] = base.ccw_rad - turn_.rad[first + k];
+    seen.ring_and_intensity[k] = beam_.ring[k] | raw[k] >> 16 << 8;
+    seen.steps[k] = steps;
+    seen.in_range[k] = static_cast<std::int32_t>(steps >= min_steps) &
+                       static_cast<std::int32_t>(steps <= max_steps);
   }
+  if (std::abs(base.ccw_rad) < std::numbers::pi_v<float> - turn_.largest_rad) return seen;
+  for (float& azimuth_rad : seen.azimuth_rad) azimuth_rad = wrap_rad(azimuth_rad);
+  return seen;
 }
 
-void Vlp16Decoder::keep_in_range(const std::array<Return, kLasers>& returns,
-                                 const std::array<Echo, kLasers>& echoes,
-                                 std::vector<Return>& out) {
-  std::array<Return, kLasers> kept;
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < kLasers; ++k) {
-    kept[count] = returns[k];
-    count += echoes[k].in_range ? 1U : 0U;
+void Vlp16Decoder::append_single(int block, int sequence, std::int32_t t_ns,
+                                 std::vector<Return>& out) const {
+  const ReturnKind kind = mode_ == ReturnMode::last ? ReturnKind::last : ReturnKind::strongest;
+  const Sequence seen = project(block, sequence);
+  Kept<kLasers> kept;
+  for (std::size_t k = 0; k < kLasers; ++k, t_ns += kLaserNs) {
+    kept.add(seen, k, t_ns, kind, seen.in_range[k]);
   }
-  out.insert(out.end(), kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count));
+  kept.append_to(out);
 }
 
-void Vlp16Decoder::merge_dual(const std::array<Return, kLasers>& last,
-                              const std::array<Echo, kLasers>& last_echo,
-                              const std::array<Return, kLasers>& other,
-                              const std::array<Echo, kLasers>& other_echo,
-                              std::vector<Return>& out) const {
-  std::array<Return, std::size_t{2} * kLasers> kept;
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < kLasers; ++k) {
-    const bool same = last_echo[k].steps == other_echo[k].steps;
-    if (same) {
-      kept[count] = last[k];
-      kept[count].kind = ReturnKind::both;
-      count += last_echo[k].in_range ? 1U : 0U;
-      continue;
-    }
-    const bool last_is_strongest = last[k].intensity > other[k].intensity;
-    const bool want_last = choice_ != ReturnChoice::strongest || last_is_strongest;
-    const bool want_other =
-        choice_ == ReturnChoice::both || (choice_ == ReturnChoice::strongest && !want_last);
-    kept[count] = last[k];
-    count += want_last && last_echo[k].in_range ? 1U : 0U;
-    kept[count] = other[k];
-    count += want_other && other_echo[k].in_range ? 1U : 0U;
+// Even blocks hold the last echo, odd ones the strongest, or the second strongest where the last
+// is the strongest; equal ones are one echo (manual, 9.3.1.5).
+void Vlp16Decoder::append_dual(int shot, int sequence, std::int32_t t_ns,
+                               std::vector<Return>& out) const {
+  const Sequence last = project(2 * shot, sequence), other = project(2 * shot + 1, sequence);
+  Kept<std::size_t{2} * kLasers> kept;
+  for (std::size_t k = 0; k < kLasers; ++k, t_ns += kLaserNs) {
+    const bool same = last.steps[k] == other.steps[k];
+    const bool last_is_strongest = last.intensity(k) > other.intensity(k);
+    const bool want_last = same || choice_ != ReturnChoice::strongest || last_is_strongest;
+    const bool want_other = !same && (choice_ == ReturnChoice::both ||
+                                      (choice_ == ReturnChoice::strongest && !want_last));
+    kept.add(last, k, t_ns, same ? ReturnKind::both : ReturnKind::last,
+             want_last ? last.in_range[k] : 0);
+    kept.add(other, k, t_ns, ReturnKind::strongest, want_other ? other.in_range[k] : 0);
   }
-  out.insert(out.end(), kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count));
+  kept.append_to(out);
 }
 
 }  // namespace lilo

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "drivers/azimuth.hpp"
+#include "drivers/firing.hpp"
 #include "drivers/packet_decoder.hpp"
 #include "drivers/sensor_config.hpp"
 #include "drivers/sensor_status.hpp"
@@ -43,15 +44,14 @@ class Vlp16Decoder final : public PacketDecoder {
   static constexpr std::uint8_t kProductHiRes = 0x24;
 
  private:
-  struct Beam {
-    float cos_elevation, sin_elevation, origin_z_m;
+  struct Beams {
+    std::array<float, kLasers> cos_elevation, sin_elevation, origin_z_m;
+    std::array<std::int32_t, kLasers> ring;
   };
-  struct Echo {
-    std::uint16_t steps;
-    bool in_range;
-  };
+  using Sequence = Firing<kLasers>;
   struct Turn {  // how far the head has turned when a laser of the block fires
     std::array<float, wire::kChannelsPerBlock> cos, sin, rad;
+    float largest_rad;
   };
 
   void set_product(std::uint8_t product_id);
@@ -59,18 +59,12 @@ class Vlp16Decoder final : public PacketDecoder {
   void measure_turn(const std::byte* packet);
   void find_gap(const std::byte* packet);
   void place_columns(const std::byte* packet);
-  void project(const std::byte* block, int sequence, std::int32_t t_ns, ReturnKind kind,
-               std::array<Return, kLasers>& returns, std::array<Echo, kLasers>& echoes) const;
-  static void keep_in_range(const std::array<Return, kLasers>& returns,
-                            const std::array<Echo, kLasers>& echoes, std::vector<Return>& out);
-  void merge_dual(const std::array<Return, kLasers>& last,
-                  const std::array<Echo, kLasers>& last_echo,
-                  const std::array<Return, kLasers>& other,
-                  const std::array<Echo, kLasers>& other_echo, std::vector<Return>& out) const;
+  [[nodiscard]] Sequence project(int block, int sequence) const;
+  void append_single(int block, int sequence, std::int32_t t_ns, std::vector<Return>& out) const;
+  void append_dual(int shot, int sequence, std::int32_t t_ns, std::vector<Return>& out) const;
 
   const AzimuthTable& azimuths_;
-  std::array<Beam, kLasers> beam_{};
-  std::array<std::uint8_t, kLasers> ring_{};
+  Beams beam_{};
   BeamTable beams_;
   int min_steps_, max_steps_;  // range limits in distance steps
   ReturnChoice choice_;

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "core/scan.hpp"
+#include "drivers/wire.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lilo {
+
+/// What some lasers of a block saw one after another. An array for each value, so that the compiler
+/// takes several lasers at a time.
+template <std::size_t kLasers>
+struct Firing {
+  std::array<std::int32_t, kLasers> steps;     ///< distance as sent
+  std::array<std::int32_t, kLasers> in_range;  ///< 1 or 0
+  std::array<float, kLasers> x_m, y_m, z_m, azimuth_rad;
+  std::array<std::int32_t, kLasers> ring_and_intensity;  ///< from the lowest byte on
+
+  [[nodiscard]] int intensity(std::size_t laser) const { return ring_and_intensity[laser] >> 8; }
+
+  /// Into its place, member by member: a whole Return would be built elsewhere and copied.
+  void write(std::size_t laser, std::int32_t t_ns, ReturnKind kind, Return& r) const {
+    r.x_m = x_m[laser];
+    r.y_m = y_m[laser];
+    r.z_m = z_m[laser];
+    r.azimuth_rad = azimuth_rad[laser];
+    r.t_ns = t_ns;
+    r.ring = static_cast<std::uint8_t>(ring_and_intensity[laser]);
+    r.intensity = static_cast<std::uint8_t>(ring_and_intensity[laser] >> 8);
+    r.kind = kind;
+    r.reserved = 0;
+  }
+};
+
+/// The channels of a block as sent: distance in the lower two bytes, intensity above.
+template <std::size_t kLasers>
+std::array<std::int32_t, kLasers> channels(const std::byte* first) {
+  std::array<std::int32_t, kLasers> raw;
+  // A channel has three bytes; behind the last one of a packet lies the stamp.
+  for (std::size_t k = 0; k < kLasers; ++k) {
+    raw[k] = static_cast<std::int32_t>(wire::u32(first + k * wire::kChannelBytes) & 0xFFFFFFU);
+  }
+  return raw;
+}
+
+/// Returns of a column on their way into a scan: written first and counted only if wanted, without
+/// a branch.
+template <std::size_t kMost>
+class Kept {
+ public:
+  /// `wanted`: 1 or 0.
+  template <std::size_t kLasers>
+  void add(const Firing<kLasers>& seen, std::size_t laser, std::int32_t t_ns, ReturnKind kind,
+           std::int32_t wanted) {
+    seen.write(laser, t_ns, kind, returns_[count_]);
+    count_ += static_cast<std::size_t>(wanted);
+  }
+  void append_to(std::vector<Return>& out) const {
+    out.insert(out.end(), returns_.begin(), returns_.begin() + static_cast<std::ptrdiff_t>(count_));
+  }
+
+ private:
+  std::array<Return, kMost> returns_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace lilo
