@@ -17,6 +17,7 @@ constexpr float kFewPoints_m = 0.1F;  // 1 sigma of what one point says of the s
 constexpr float kThin = 0.065F;
 constexpr std::uint32_t kYoung = 4;  // keyframes
 constexpr std::size_t kSweepShare = 64;
+constexpr int kLevelBits = 10;  // of a tag, the uppermost: how high the cell lies
 
 Symmetric outer(const Eigen::Vector3f& v) {
   Symmetric o;
@@ -30,19 +31,12 @@ std::int32_t floor_of(double v) {
   return towards_zero - static_cast<std::int32_t>(v < towards_zero);
 }
 
-/// a b' + b a'
-Symmetric twice_outer(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-  Symmetric o;
-  o << 2 * a.x() * b.x(), a.x() * b.y() + a.y() * b.x(), a.x() * b.z() + a.z() * b.x(),
-      2 * a.y() * b.y(), a.y() * b.z() + a.z() * b.y(), 2 * a.z() * b.z();
-  return o;
-}
-
 }  // namespace
 
 CellMap::CellMap(const CellMapConfig& config)
     : config_(config),
-      per_m_(1.0 / static_cast<double>(config.cell_m)),
+      cell_m_(static_cast<double>(config.cell_m)),
+      per_m_(1.0 / cell_m_),
       mask_(std::bit_ceil(static_cast<std::size_t>(config.capacity) * 2) - 1),
       slots_(mask_ + 1) {
   const auto capacity = static_cast<std::size_t>(config.capacity);
@@ -56,7 +50,7 @@ CellMap::Index CellMap::index_of(const Eigen::Vector3d& p) const {
 }
 
 Eigen::Vector3d CellMap::center_of(const Index& i) const {
-  return Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5) / per_m_;
+  return cell_m_ * Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5);
 }
 
 /// Cells above each other lie side by side: a fit looks at nine threes of them.
@@ -74,25 +68,38 @@ std::uint32_t CellMap::tag_of(const Index& i) {
          (static_cast<std::uint32_t>(i.z) & 0x3FFU) << 22U;
 }
 
-CellMap::Place CellMap::place_of(const Eigen::Vector3d& point_m) const {
-  Place place{index_of(point_m)};
-  place.slot = slot_of(place.index);
-  __builtin_prefetch(&slots_[place.slot]);
+CellMap::Index CellMap::between(std::uint32_t from_tag, std::uint32_t to_tag) {
+  const auto part = [&](int low, int bits) {
+    const std::uint32_t cut = ((to_tag >> low) - (from_tag >> low)) << (32 - bits);
+    return static_cast<std::int32_t>(cut) >> (32 - bits);
+  };
+  return {part(0, 11), part(11, 11), part(22, kLevelBits)};
+}
+
+CellMap::Place CellMap::place_of(const Eigen::Vector3d& point_m, std::int32_t last) const {
+  Place place{index_of(point_m), last};
+  if (last != kNone) {
+    __builtin_prefetch(&cells_[static_cast<std::size_t>(last)]);
+  } else {
+    place.slot = slot_of(place.index);
+    __builtin_prefetch(&slots_[place.slot]);
+  }
   return place;
 }
 
-std::int32_t CellMap::find_cell(const Place& place) const {
-  const std::uint32_t tag = tag_of(place.index);
-  for (std::size_t slot = place.slot; slots_[slot].at >= 0; slot = (slot + 1) & mask_) {
-    if (slots_[slot].tag == tag) return slots_[slot].at;
-  }
-  return -1;
-}
-
 std::int32_t CellMap::cell_at(const Place& place) const {
-  const std::int32_t at = find_cell(place);
-  if (at >= 0) __builtin_prefetch(&cells_[static_cast<std::size_t>(at)]);
-  return at;
+  std::size_t slot = place.slot;
+  if (place.last != kNone) {
+    if (cells_[static_cast<std::size_t>(place.last)].index == place.index) return place.last;
+    slot = slot_of(place.index);
+  }
+  const std::uint32_t tag = tag_of(place.index);
+  for (; slots_[slot].at >= 0; slot = (slot + 1) & mask_) {
+    if (slots_[slot].tag != tag) continue;
+    __builtin_prefetch(&cells_[static_cast<std::size_t>(slots_[slot].at)]);
+    return slots_[slot].at;
+  }
+  return kNone;
 }
 
 std::int32_t CellMap::open(const Place& place) {
@@ -154,35 +161,59 @@ Match CellMap::match(std::int32_t at, const Eigen::Vector3d& point_m) {
 }
 
 CellMap::Sums CellMap::sums_around(const Index& i) const {
-  std::array<Place, 27> places;
+  std::array<std::size_t, 9> slots;  // of the lowest in each column of three
+  std::array<std::uint32_t, 9> tags;
   std::size_t n = 0;
   for (std::int32_t x = -1; x <= 1; ++x) {
-    for (std::int32_t y = -1; y <= 1; ++y) {
-      for (std::int32_t z = -1; z <= 1; ++z) {
-        places[n].index = {i.x + x, i.y + y, i.z + z};
-        places[n].slot = slot_of(places[n].index);
-        __builtin_prefetch(&slots_[places[n].slot]);
-        ++n;
-      }
+    for (std::int32_t y = -1; y <= 1; ++y, ++n) {
+      const Index lowest{i.x + x, i.y + y, i.z - 1};
+      slots[n] = slot_of(lowest);
+      tags[n] = tag_of(lowest);
+      __builtin_prefetch(&slots_[slots[n]]);
     }
   }
-  std::array<std::int32_t, 27> at{};
-  for (n = 0; n < places.size(); ++n) {
-    at[n] = find_cell(places[n]);
-    if (at[n] >= 0) __builtin_prefetch(&sums_[static_cast<std::size_t>(at[n])]);
+  struct Neighbour {
+    std::int32_t at;
+    float x_m, y_m, z_m;  // from here
+  };
+  std::array<Neighbour, 27> found;
+  std::size_t count = 0;
+  const auto cells_m = [&](std::size_t cells) {
+    return config_.cell_m * (static_cast<float>(cells) - 1.0F);
+  };
+  for (n = 0; n < slots.size(); ++n) {
+    // The highest belongs two slots on: up to there an empty one ends nothing.
+    for (std::size_t k = 0;; ++k) {
+      const Slot& slot = slots_[(slots[n] + k) & mask_];
+      if (slot.at < 0) {
+        if (k >= 2) break;
+        continue;
+      }
+      const std::uint32_t level = std::rotl(slot.tag - tags[n], kLevelBits);  // if the same column
+      if (level > 2) continue;
+      found[count++] = {slot.at, cells_m(n / 3), cells_m(n % 3), cells_m(level)};
+      __builtin_prefetch(&sums_[static_cast<std::size_t>(slot.at)]);
+    }
   }
-  Sums all;
-  for (n = 0; n < places.size(); ++n) {
-    if (at[n] < 0) continue;
-    const Sums& one = sums_[static_cast<std::size_t>(at[n])];
-    const Index& j = places[n].index;
-    const Eigen::Vector3f o =
-        config_.cell_m * Eigen::Vector3i(j.x - i.x, j.y - i.y, j.z - i.z).cast<float>();
-    all.count += one.count;
-    all.point += one.point + one.count * o;
-    all.square += one.square + twice_outer(o, one.point) + one.count * outer(o);
+  float points = 0.0F;
+  Eigen::Vector3f point = Eigen::Vector3f::Zero();
+  Symmetric square = Symmetric::Zero();
+  for (n = 0; n < count; ++n) {
+    const Neighbour& o = found[n];
+    const Sums& one = sums_[static_cast<std::size_t>(o.at)];
+    const Eigen::Vector3f& p = one.point;
+    const Eigen::Vector3f q = p + one.count * Eigen::Vector3f(o.x_m, o.y_m, o.z_m);
+    points += one.count;
+    point += q;
+    // o p' + p o' + count o o'
+    square[0] += one.square[0] + o.x_m * (p.x() + q.x());
+    square[1] += one.square[1] + (o.x_m * q.y() + o.y_m * p.x());
+    square[2] += one.square[2] + (o.x_m * q.z() + o.z_m * p.x());
+    square[3] += one.square[3] + o.y_m * (p.y() + q.y());
+    square[4] += one.square[4] + (o.y_m * q.z() + o.z_m * p.y());
+    square[5] += one.square[5] + o.z_m * (p.z() + q.z());
   }
-  return all;
+  return {points, point, square};
 }
 
 void CellMap::fit(Cell& cell) const {
@@ -242,10 +273,15 @@ void CellMap::remove(std::size_t slot) {
 
 void CellMap::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
   const std::size_t share = (mask_ + 1) / kSweepShare;
+  const Index center = index_of(center_m);
+  const std::uint32_t center_tag = tag_of(center);
+  const Eigen::Vector3d rest_m = center_of(center) - center_m;
   for (std::size_t n = 0; n < share; ++n) {
+    // The tag tells where a cell is: to read each of them would take most of the time.
     if (slots_[sweep_].at >= 0) {
-      const Index& i = cells_[static_cast<std::size_t>(slots_[sweep_].at)].index;
-      if ((center_of(i) - center_m).squaredNorm() > radius_m * radius_m) {
+      const Index from = between(center_tag, slots_[sweep_].tag);
+      const Eigen::Vector3d from_m = cell_m_ * Eigen::Vector3d(from.x, from.y, from.z) + rest_m;
+      if (from_m.squaredNorm() > radius_m * radius_m) {
         remove(sweep_);
         continue;  // another cell may have moved into this slot
       }

@@ -46,11 +46,14 @@ class CellMap {
  public:
   struct Index {
     std::int32_t x, y, z;
+    bool operator==(const Index&) const = default;
   };
+  static constexpr std::int32_t kNone = -1;
   /// A cell's place in the table, whether it is there or not.
   struct Place {
     Index index{};
-    std::size_t slot = 0;
+    std::int32_t last = kNone;  ///< the cell that it was before, if a point has hardly moved
+    std::size_t slot = 0;       ///< only where there is no last
   };
 
   explicit CellMap(const CellMapConfig& config);
@@ -68,7 +71,8 @@ class CellMap {
 
   /// find() and insert() in steps. Each but the last asks the memory for what the next one reads;
   /// who takes them for many points in turn does not wait for it.
-  [[nodiscard]] Place place_of(const Eigen::Vector3d& point_m) const;
+  /// `last`: what cell_at() answered for it before, the map being the same.
+  [[nodiscard]] Place place_of(const Eigen::Vector3d& point_m, std::int32_t last = kNone) const;
   [[nodiscard]] std::int32_t cell_at(const Place& place) const;
   Match match(std::int32_t at, const Eigen::Vector3d& point_m);
   /// The cell there, made if missing.
@@ -117,13 +121,14 @@ class CellMap {
   [[nodiscard]] Eigen::Vector3d center_of(const Index& i) const;
   [[nodiscard]] std::size_t slot_of(const Index& i) const;
   [[nodiscard]] static std::uint32_t tag_of(const Index& i);
-  [[nodiscard]] std::int32_t find_cell(const Place& place) const;
+  /// From one cell to another, less than half a window away.
+  [[nodiscard]] static Index between(std::uint32_t from_tag, std::uint32_t to_tag);
   [[nodiscard]] Sums sums_around(const Index& i) const;
   void fit(Cell& cell) const;
   void remove(std::size_t slot);
 
   CellMapConfig config_;
-  double per_m_;
+  double cell_m_, per_m_;
   std::size_t mask_;
   std::vector<Slot> slots_;
   std::vector<Cell> cells_;

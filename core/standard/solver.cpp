@@ -66,10 +66,12 @@ std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t fi
     one.feature = &f;
     one.turned_m = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
     one.point_m = one.turned_m.cast<double>() + sampled_.origin_m(f.s);
-    one.place = maps.fine(f.kind).place_of(one.point_m);
+    one.place = maps.fine(f.kind).place_of(one.point_m, last_[k].fine);
   }
   for (std::size_t j = 0; j < n; ++j) {
-    asked_[j].cell = maps.fine(asked_[j].feature->kind).cell_at(asked_[j].place);
+    Asked& one = asked_[j];
+    one.cell = maps.fine(one.feature->kind).cell_at(one.place);
+    last_[first + j * stride].fine = one.cell;
   }
   return n;
 }
@@ -88,7 +90,10 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
       const Asked& one = asked_[j];
       Match match = maps.fine(one.feature->kind).match(one.cell, one.point_m);
       if (match.information == nullptr) {
-        match = maps.coarse(one.feature->kind).find(one.point_m);
+        CellMap& coarse = maps.coarse(one.feature->kind);
+        std::int32_t& cell = last_[k + j * stride].coarse;
+        cell = coarse.cell_at(coarse.place_of(one.point_m, cell));
+        match = coarse.match(cell, one.point_m);
       }
       if (match.information == nullptr) continue;
       ++solution.matched;
@@ -139,6 +144,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   const int n = kKnotSize * (config_.segments + 1);
   solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, config_.segments,
                          Unknowns::Zero(n)};
+  last_.assign(features.size(), {});
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, solution);
     NormalMatrix H = NormalMatrix::Zero(n, n);

@@ -64,7 +64,10 @@ using ResidualSums = Eigen::Matrix<double, 6 + 9 + 6 + 6, 1>;
 /// Aligns features with the maps. Keeps its working memory between calls.
 class Solver {
  public:
-  explicit Solver(const SolverConfig& config) : config_(config) {}
+  /// `most_features`: of one solve(), for which memory is reserved.
+  Solver(const SolverConfig& config, std::size_t most_features) : config_(config) {
+    last_.reserve(most_features);
+  }
   Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior);
 
  private:
@@ -75,7 +78,11 @@ class Solver {
     Eigen::Vector3f turned_m;  // in the odometry's axes, from the sensor
     Eigen::Vector3d point_m;   // in the odometry's frame
     CellMap::Place place;
-    std::int32_t cell = -1;
+    std::int32_t cell = CellMap::kNone;
+  };
+  /// Where a feature was in the step before.
+  struct Cells {
+    std::int32_t fine = CellMap::kNone, coarse = CellMap::kNone;
   };
   struct Sums {
     double weights = 0.0, squares = 0.0, structure = 0.0;
@@ -90,6 +97,7 @@ class Solver {
   Sampled sampled_;
   std::array<ResidualSums, kBins + 1> bins_;
   std::array<Asked, 32> asked_;
+  std::vector<Cells> last_;
 };
 
 }  // namespace lilo::standard

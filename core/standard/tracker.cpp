@@ -57,7 +57,7 @@ Tracker::Tracker(const OdometryConfig& config)
     : config_(config),
       selection_(config.standard.ground_features, config.standard.structure_features),
       maps_(make_maps(config.standard)),
-      solver_(solver_config(config.standard)),
+      solver_(solver_config(config.standard), selection_.most()),
       unrest_(usual_density(config.standard)),
       footprint_(selection_.most()),
       motion_check_(selection_.most()),

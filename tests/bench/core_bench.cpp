@@ -134,7 +134,7 @@ void solver_round(benchmark::State& state) {
   }
   standard::Selection selection(1200, 1500);
   const auto& chosen = selection.choose(all);
-  standard::Solver solver({.segments = 2, .max_iterations = 1});
+  standard::Solver solver({.segments = 2, .max_iterations = 1}, 4096);
   int matched = 0;
   for (auto _ : state) matched = solver.solve(chosen, maps, {}).matched;
   state.counters["matched"] = matched;
