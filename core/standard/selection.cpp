@@ -13,8 +13,7 @@ Selection::Selection(int ground_goal, int structure_goal)
   chosen_.reserve(taken_.size() / 2);
 }
 
-std::uint64_t Selection::voxel_of(const Feature& f) const {
-  const float per_m = 1.0F / voxel_m_[static_cast<std::size_t>(f.kind)];
+std::uint64_t Selection::voxel_of(const Feature& f, float per_m) {
   constexpr float kOffset = 1 << 15;  // all are positive then, and to cut off is to round down
   const auto part = [&](float v_m) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(v_m * per_m + kOffset)) & 0xFFFFU;
@@ -45,6 +44,8 @@ bool Selection::take_evenly(const std::vector<Feature>& all) {
   std::fill(taken_.begin(), taken_.end(), 0);
   chosen_.clear();
   std::array<int, kKinds> count{}, offered{};
+  const std::array<float, kKinds> per_m{1.0F / voxel_m_[0], 1.0F / voxel_m_[1]};
+  std::array<std::uint64_t, kMaxRings> last{};  // of each ring: often the same again
   bool done = true;
   for (const Feature& f : all) {
     const auto kind = static_cast<std::size_t>(f.kind);
@@ -53,7 +54,10 @@ bool Selection::take_evenly(const std::vector<Feature>& all) {
       done = false;
       continue;
     }
-    if (!take(voxel_of(f))) continue;
+    const std::uint64_t voxel = voxel_of(f, per_m[kind]);
+    if (voxel == last[f.ring]) continue;
+    last[f.ring] = voxel;
+    if (!take(voxel)) continue;
     ++count[kind];
     chosen_.push_back(f);
   }

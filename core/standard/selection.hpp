@@ -23,7 +23,7 @@ class Selection {
 
  private:
   static constexpr int kKinds = 2;
-  [[nodiscard]] std::uint64_t voxel_of(const Feature& f) const;
+  [[nodiscard]] static std::uint64_t voxel_of(const Feature& f, float per_m);
   /// False when a goal was reached twice over before the end, or not even half though there is
   /// more. Adapts the voxels in any case.
   bool take_evenly(const std::vector<Feature>& all);
