@@ -54,7 +54,7 @@ std::uint16_t crc16(const std::uint8_t* bytes, std::size_t count, std::uint16_t 
 void Hdl64eStatus::restart() { *this = Hdl64eStatus(); }
 
 double Hdl64eStatus::progress() const {
-  return std::min(1.0, static_cast<double>(seen_.count()) / static_cast<double>(kTableBytes));
+  return std::min(1.0, static_cast<double>(seen_count_) / static_cast<double>(kTableBytes));
 }
 
 Hdl64eStatus::Table Hdl64eStatus::see(std::uint8_t type, std::uint8_t value, std::uint32_t lost,
@@ -70,7 +70,7 @@ Hdl64eStatus::Table Hdl64eStatus::see(std::uint8_t type, std::uint8_t value, std
   if (!phase_ || (position_ + kCycle - *phase_) % kCycle < kTimeSlots) return Table::incomplete;
   note_byte(value);
   if (type == '5') find_marker();
-  if (!origin_ || seen_.count() < kTableBytes) return Table::incomplete;
+  if (!origin_ || seen_count_ < kTableBytes) return Table::incomplete;
   return judge(has_checksum);
 }
 
@@ -112,7 +112,10 @@ void Hdl64eStatus::note_byte(std::uint8_t value) {
     judged_ = false;
     seen_.reset();
     seen_twice_.reset();
+    seen_count_ = seen_twice_count_ = 0;
   }
+  if (!seen_[position_]) ++seen_count_;
+  if (known && same && !seen_twice_[position_]) ++seen_twice_count_;
   seen_twice_[position_] = known && same;
   seen_.set(position_);
   values_[position_] = value;
@@ -136,7 +139,7 @@ std::array<std::uint8_t, Hdl64eStatus::kTableBytes> Hdl64eStatus::table_bytes() 
 }
 
 Hdl64eStatus::Table Hdl64eStatus::judge(bool has_checksum) {
-  const bool whole_twice = seen_twice_.count() >= kTableBytes;
+  const bool whole_twice = seen_twice_count_ >= kTableBytes;
   if (judged_ && !whole_twice) return Table::incomplete;
   const auto bytes = table_bytes();
   std::uint16_t crc = 0;
@@ -149,7 +152,10 @@ Hdl64eStatus::Table Hdl64eStatus::judge(bool has_checksum) {
   }
   const auto stated = static_cast<std::uint16_t>(i16(bytes.data() + kTableBytes - 2));
   judged_ = true;
-  if (whole_twice) seen_twice_.reset();
+  if (whole_twice) {
+    seen_twice_.reset();
+    seen_twice_count_ = 0;
+  }
   if (!ids_hold || !implausible(calibration_).empty()) return Table::refused;
   if (stated == crc) return Table::checked;
   if (has_checksum) return Table::refused;

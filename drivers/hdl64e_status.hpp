@@ -63,6 +63,7 @@ class Hdl64eStatus {
   std::optional<std::size_t> origin_;  // position_ at which the lap begins
   std::array<std::uint8_t, kLap> values_{};
   std::bitset<kLap> seen_, seen_twice_;
+  std::size_t seen_count_ = 0, seen_twice_count_ = 0;  // bits set: asked with every packet
   bool judged_ = false;
   Hdl64eCalibration calibration_;
 
