@@ -37,6 +37,7 @@ CellMap::CellMap(const CellMapConfig& config)
     : config_(config),
       cell_m_(static_cast<double>(config.cell_m)),
       per_m_(1.0 / cell_m_),
+      kept_(1.0F - 1.0F / config.memory),
       mask_(std::bit_ceil(static_cast<std::size_t>(config.capacity) * 2) - 1),
       slots_(mask_ + 1) {
   const auto capacity = static_cast<std::size_t>(config.capacity);
@@ -108,7 +109,6 @@ std::int32_t CellMap::open(const Place& place) {
   for (; slots_[slot].at >= 0; slot = (slot + 1) & mask_) {
     if (slots_[slot].tag != tag) continue;
     __builtin_prefetch(&sums_[static_cast<std::size_t>(slots_[slot].at)], 1);
-    __builtin_prefetch(&cells_[static_cast<std::size_t>(slots_[slot].at)]);
     return slots_[slot].at;
   }
   if (used_ == config_.capacity) {
@@ -132,24 +132,19 @@ std::int32_t CellMap::open(const Place& place) {
   return at;
 }
 
-void CellMap::add(std::int32_t at, const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
+void CellMap::add(std::int32_t at, const Index& index, const Eigen::Vector3d& point_m,
+                  const Eigen::Vector3f& reach_m) {
   if (at < 0) return;
   Sums& sums = sums_[static_cast<std::size_t>(at)];
-  if (sums.count >= config_.memory) {
-    const float kept = 1.0F - 1.0F / config_.memory;
-    sums.count *= kept;
-    sums.point *= kept;
-    sums.square *= kept;
-  }
-  const Index& i = cells_[static_cast<std::size_t>(at)].index;
-  const Eigen::Vector3f p = (point_m - center_of(i)).cast<float>();
+  const float kept = sums.count >= config_.memory ? kept_ : 1.0F;
+  const Eigen::Vector3f p = (point_m - center_of(index)).cast<float>();
   // Seen through a window of three cells, a longer reach is just "all of it".
   const float window2 = 9.0F * config_.cell_m * config_.cell_m;
   const float reach2 = reach_m.squaredNorm();
   const float spread = reach2 > window2 ? window2 / (12.0F * reach2) : 1.0F / 12.0F;  // if even
-  sums.count += 1.0F;
-  sums.point += p;
-  sums.square += outer(p) + spread * outer(reach_m);
+  sums.count = kept * sums.count + 1.0F;
+  sums.point = kept * sums.point + p;
+  sums.square = kept * sums.square + (outer(p) + spread * outer(reach_m));
 }
 
 Match CellMap::match(std::int32_t at, const Eigen::Vector3d& point_m) {

@@ -62,7 +62,8 @@ class CellMap {
   /// surface. The surface between the two was not seen and counts as spread; without it a single
   /// ring on the ground looks like a plane through its own rays, blind to pitch ("cone lock").
   void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
-    add(open(place_of(point_m)), point_m, reach_m);
+    const Place place = place_of(point_m);
+    add(open(place), place.index, point_m, reach_m);
   }
 
   /// The distribution around a point. Fits are cached: a young cell is fitted again after every
@@ -77,7 +78,8 @@ class CellMap {
   Match match(std::int32_t at, const Eigen::Vector3d& point_m);
   /// The cell there, made if missing.
   std::int32_t open(const Place& place);
-  void add(std::int32_t at, const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m);
+  void add(std::int32_t at, const Index& index, const Eigen::Vector3d& point_m,
+           const Eigen::Vector3f& reach_m);
 
   void end_keyframe() { ++keyframe_; }
 
@@ -129,6 +131,7 @@ class CellMap {
 
   CellMapConfig config_;
   double cell_m_, per_m_;
+  float kept_;  // of what a cell remembers, when one more point comes
   std::size_t mask_;
   std::vector<Slot> slots_;
   std::vector<Cell> cells_;
