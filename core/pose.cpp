@@ -5,11 +5,20 @@
 namespace lilo {
 
 Eigen::Quaterniond so3_exp(const Eigen::Vector3d& w) {
-  const double angle = w.norm();
-  // sin(a/2)/a by its Taylor series near zero, where the quotient loses its digits.
-  const double k = angle < 1e-6 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
-  const Eigen::Quaterniond q(std::cos(0.5 * angle), k * w.x(), k * w.y(), k * w.z());
-  return q.normalized();
+  const double h2 = 0.25 * w.squaredNorm();  // of half the angle
+  double cosine, half_sine_part;             // cos h, sin h / 2h
+  if (h2 < 0.0025) {
+    // Near zero the quotient loses its digits; up to 0.1 rad Taylor's series has all of them, and
+    // asks for neither sine nor cosine.
+    cosine = 1.0 - h2 / 2.0 * (1.0 - h2 / 12.0 * (1.0 - h2 / 30.0));
+    half_sine_part = 0.5 * (1.0 - h2 / 6.0 * (1.0 - h2 / 20.0 * (1.0 - h2 / 42.0)));
+  } else {
+    const double h = std::sqrt(h2);
+    cosine = std::cos(h);
+    half_sine_part = 0.5 * std::sin(h) / h;
+  }
+  const Eigen::Vector3d v = half_sine_part * w;
+  return Eigen::Quaterniond(cosine, v.x(), v.y(), v.z()).normalized();
 }
 
 Eigen::Vector3d so3_log(const Eigen::Quaterniond& q) {

@@ -28,6 +28,14 @@ TEST(So3, ExpOfZAxisIsPlaneRotation) {
   EXPECT_NEAR((q * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 0.0, 1e-15);
 }
 
+TEST(So3, ExpIsTheTurnByThatAngle) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(1.0, -2.0, 0.5).normalized();
+  for (const double angle : {1e-9, 1e-3, 0.03, 0.0999, 0.1001, 1.0, 3.0}) {
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, axis));
+    EXPECT_LT((so3_exp(angle * axis).coeffs() - turn.coeffs()).norm(), 4e-16) << angle;
+  }
+}
+
 TEST(So3, SkewIsCrossProduct) {
   std::mt19937 rng(2);
   const Eigen::Vector3d a = random_vector(rng, 3.0), b = random_vector(rng, 3.0);
