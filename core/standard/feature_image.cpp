@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace lilo::standard {
@@ -23,9 +24,12 @@ constexpr float kSpread_rad = 0.35F;
 // With 64 rings, 512 to 1024 columns give the same errors. Fewer are worse, more cost time.
 constexpr int kMostPixels = 64 * 576;
 
-template <typename Bits>
-bool has(const Bits& bits, std::size_t ring) {
-  return (bits[ring / 64] >> (ring % 64) & 1U) != 0;
+constexpr float kNone_m2 = std::numeric_limits<float>::infinity();
+
+float gap_rad(const BeamTable& beams, int ring) {
+  if (beams.ring_count < 2) return 0.0F;
+  const auto lower = static_cast<std::size_t>(std::min(ring, beams.ring_count - 2));
+  return beams.elevation_rad[lower + 1] - beams.elevation_rad[lower];
 }
 
 float columns_per_rad(int columns) {
@@ -33,10 +37,10 @@ float columns_per_rad(int columns) {
 }
 
 /// Of an image `columns` wide that begins straight behind and goes clockwise.
-std::uint32_t column_of(float azimuth_rad, int columns, float per_rad) {
-  const auto column = static_cast<int>((std::numbers::pi_v<float> - azimuth_rad) * per_rad);
-  const int turned = column < columns ? column : column - columns;
-  return static_cast<std::uint32_t>(std::clamp(turned, 0, columns - 1));
+std::uint32_t column_of(float azimuth_rad, std::uint32_t columns, float per_rad) {
+  const auto column = static_cast<std::uint32_t>(
+      static_cast<std::int32_t>((std::numbers::pi_v<float> - azimuth_rad) * per_rad));
+  return column < columns ? column : 0;  // at the seam rounding reaches the last column's end
 }
 
 }  // namespace
@@ -62,7 +66,12 @@ void FeatureImage::begin(const BeamTable& beams) {
   margin_ = static_cast<int>(std::ceil(kSpread_rad * columns_per_rad(columns_)));
   const auto size = static_cast<std::size_t>(beams.ring_count) * static_cast<std::size_t>(columns_);
   pixels_.resize(size);
-  steps_.fill({});
+  steps_ = {};
+  steps_.length2_m2.fill(kNone_m2);
+  for (std::size_t ring = 0; ring < static_cast<std::size_t>(std::max(beams.ring_count, 1));
+       ++ring) {
+    gap_rad_[ring] = gap_rad(beams, static_cast<int>(ring));
+  }
   filled_.assign(static_cast<std::size_t>(columns_), Filled{});
   for (std::vector<Feature>* features : {&features_, &last_features_}) {
     if (features->capacity() < size) features->resize(size);  // touches it all
@@ -102,7 +111,7 @@ int FeatureImage::place_of(int column) const {
 void FeatureImage::project(std::span<const Return> returns) {
   // In registers, whatever is written to the image.
   const auto rows = static_cast<std::uint32_t>(beams_.ring_count);
-  const int columns = columns_;
+  const auto columns = static_cast<std::uint32_t>(columns_);
   const float per_rad = columns_per_rad(columns_);
   const float nearest2 = nearest2_, farthest2 = farthest2_;
   Pixel* const pixels = pixels_.data();
@@ -144,107 +153,116 @@ void FeatureImage::classify_until(int place) {
 void FeatureImage::gather(int column, Gathered& g) const {
   const auto rows = static_cast<std::size_t>(beams_.ring_count);
   const auto pixels_of = [&](int c) { return pixels_.data() + static_cast<std::size_t>(c) * rows; };
-  const auto flat_m = [](const Pixel& p) { return std::sqrt(p.x_m * p.x_m + p.y_m * p.y_m); };
-  std::copy_n(pixels_of(column), rows, g.pixels.begin());
+  const auto take = [&g](const Pixel& p, std::size_t k) {
+    g.x_m[k] = p.x_m;
+    g.y_m[k] = p.y_m;
+    g.z_m[k] = p.z_m;
+    g.t_ns[k] = p.t_ns;
+  };
+  const Pixel* const pixels = pixels_of(column);
+  for (std::size_t k = 0; k < rows; ++k) take(pixels[k], k);
   g.own = filled_[static_cast<std::size_t>(column)];
-  for (std::size_t k = 0; k < rows; ++k) {
-    g.flats_m[k] = has(g.own, k) ? flat_m(g.pixels[k]) : 0.0F;
-  }
-  Filled have = g.own;
+  Filled seen = g.own, taken = g.own;
   const int place = place_of(column);
   for (const int side : {place > 0 ? -1 : 0, place + 1 < columns_ ? 1 : 0}) {
     const int other = (column + side + columns_) % columns_;
-    for (std::size_t word = 0; word < have.size(); ++word) {
-      std::uint64_t missing = filled_[static_cast<std::size_t>(other)][word] & ~have[word];
-      have[word] |= missing;
-      for (; missing != 0; missing &= missing - 1) {
-        const std::size_t k = word * 64 + static_cast<std::size_t>(std::countr_zero(missing));
+    for (std::size_t word = 0; word < seen.size(); ++word) {
+      std::uint64_t more = filled_[static_cast<std::size_t>(other)][word] & ~seen[word];
+      seen[word] |= more;
+      for (; more != 0; more &= more - 1) {
+        const std::size_t k = word * 64 + static_cast<std::size_t>(std::countr_zero(more));
         const Pixel& stand_in = pixels_of(other)[k];
         if (stand_in.z_m >= 0.0F) continue;
-        g.pixels[k] = stand_in;
-        g.flats_m[k] = flat_m(stand_in);
+        take(stand_in, k);
+        taken[word] |= more & -more;
       }
     }
   }
-}
-
-FeatureImage::Step FeatureImage::step_between(const Pixel* lower, const float* flats_m,
-                                              float gap_rad) {
-  const float dd = flats_m[1] - flats_m[0];
-  const float dz = lower[1].z_m - lower[0].z_m;
-  const bool steep = std::abs(dz) > kSteep * std::abs(dd);
-  // Rings are range * gap apart across the ray, and farther on what the ray grazes: by the ratio of
-  // flat to z, but not beyond the range.
-  const float across_m = flats_m[0] * gap_rad;
-  const float grazing_m = steep ? flats_m[0] : std::max(std::abs(lower->z_m), across_m);
-  const float reach_m2 = kSameSurface * across_m * flats_m[0];
-  const float length2_m2 = dd * dd + dz * dz;
-  if (!(length2_m2 * grazing_m * grazing_m < reach_m2 * reach_m2)) return {};
-  return {length2_m2, !steep, steep};
-}
-
-void FeatureImage::classify_column(int column, std::vector<Feature>& out) {
-  const int rows = beams_.ring_count;
-  Gathered gathered;
-  gather(column, gathered);
-  const Pixel* pixels = gathered.pixels.data();
-  const float* flats_m = gathered.flats_m.data();
-  Step* const step_to = steps_.data() + 1;  // from the ring below; to the lowest none
-  for (int ring = 0; ring + 1 < rows; ++ring) {
-    step_to[ring + 1] = flats_m[ring] > 0.0F && flats_m[ring + 1] > 0.0F
-                            ? step_between(pixels + ring, flats_m + ring, gap_rad(ring))
-                            : Step{};
+  for (std::size_t k = 0; k < rows; ++k) {
+    g.flat_m[k] = std::sqrt(g.x_m[k] * g.x_m[k] + g.y_m[k] * g.y_m[k]);
   }
-  for (int ring = 0; ring < rows; ++ring) {
-    if (has(gathered.own, static_cast<std::size_t>(ring))) {
-      add_feature(pixels, ring, step_to + ring, out);
+  for (std::size_t first = 0; first < rows; first += 64) {
+    const std::size_t beyond = first + 64 - std::min(first + 64, rows);  // no rings of this sensor
+    std::uint64_t empty = ~taken[first / 64] << beyond >> beyond;
+    for (; empty != 0; empty &= empty - 1) {
+      g.flat_m[first + static_cast<std::size_t>(std::countr_zero(empty))] = 0.0F;
     }
   }
 }
 
-float FeatureImage::gap_rad(int ring) const {
-  if (beams_.ring_count < 2) return 0.0F;
-  const auto lower = static_cast<std::size_t>(std::min(ring, beams_.ring_count - 2));
-  return beams_.elevation_rad[lower + 1] - beams_.elevation_rad[lower];
+/// From each ring to the next. No branches: the compiler takes four rings at a time.
+void FeatureImage::step_up(const Gathered& g) {
+  float* const length2_m2 = steps_.length2_m2.data() + 2;
+  std::int32_t* const flat = steps_.flat.data() + 2;
+  std::int32_t* const steep = steps_.steep.data() + 2;
+  const auto count = static_cast<std::size_t>(std::max(beams_.ring_count - 1, 0));
+  for (std::size_t k = 0; k < count; ++k) {
+    const float from_m = g.flat_m[k], to_m = g.flat_m[k + 1];
+    const float dd = to_m - from_m, dz = g.z_m[k + 1] - g.z_m[k];
+    const bool is_steep = std::abs(dz) > kSteep * std::abs(dd);
+    // Rings are range * gap apart across the ray, and farther on what the ray grazes: by the ratio
+    // of flat to z, but not beyond the range.
+    const float across_m = from_m * gap_rad_[k];
+    const float grazing_m = is_steep ? from_m : std::max(std::abs(g.z_m[k]), across_m);
+    const float reach_m2 = kSameSurface * across_m * from_m;
+    const float length2 = dd * dd + dz * dz;
+    const bool one_surface =
+        (from_m > 0.0F) & (to_m > 0.0F) & (length2 * grazing_m * grazing_m < reach_m2 * reach_m2);
+    length2_m2[k] = one_surface ? length2 : kNone_m2;
+    flat[k] = static_cast<std::int32_t>(one_surface & !is_steep);
+    steep[k] = static_cast<std::int32_t>(one_surface & is_steep);
+  }
 }
 
-void FeatureImage::add_feature(const Pixel* column, int ring, const Step* steps,
+void FeatureImage::classify_column(int column, std::vector<Feature>& out) {
+  gather(column, gathered_);
+  step_up(gathered_);
+  for (std::size_t word = 0; word < gathered_.own.size(); ++word) {
+    for (std::uint64_t own = gathered_.own[word]; own != 0; own &= own - 1) {
+      add_feature(gathered_, word * 64 + static_cast<std::size_t>(std::countr_zero(own)), out);
+    }
+  }
+}
+
+void FeatureImage::add_feature(const Gathered& g, std::size_t ring,
                                std::vector<Feature>& out) const {
-  const Step before = steps[-1], below = steps[0], above = steps[1], beyond = steps[2];
-  const Pixel& p = column[ring];
-  const bool flat = above.flat || below.flat;
-  const bool steep = above.steep || below.steep;
-  if (flat && steep) return;          // a kerb or the foot of a wall: neither
-  if (flat && p.z_m >= 0.0F) return;  // a roof or a canopy seen from below
-  Feature f{p.x_m,
-            p.y_m,
-            p.z_m,
-            static_cast<float>(p.t_ns),  // until finish()
+  const std::size_t below = ring + 1, above = ring + 2;  // steps
+  const bool flat = (steps_.flat[below] | steps_.flat[above]) != 0;
+  const bool steep = (steps_.steep[below] | steps_.steep[above]) != 0;
+  if (flat && steep) return;                // a kerb or the foot of a wall: neither
+  if (flat && g.z_m[ring] >= 0.0F) return;  // a roof or a canopy seen from below
+  // From the ground to the foot of a wall goes no surface.
+  const bool foot_below = flat && steps_.steep[below - 1] != 0;
+  const bool foot_above = flat && steps_.steep[above + 1] != 0;
+  Feature f{g.x_m[ring],
+            g.y_m[ring],
+            g.z_m[ring],
+            static_cast<float>(g.t_ns[ring]),  // until finish()
             0.0F,
             0.0F,
             0.0F,
             flat ? Kind::ground : Kind::structure,
             static_cast<std::uint8_t>(ring)};
-  // From the ground to the foot of a wall goes no surface.
-  const Step to_lower = flat && before.steep ? Step{} : below;
-  const Step to_upper = flat && beyond.steep ? Step{} : above;
-  set_reach(column + ring, to_lower, to_upper, f);
+  set_reach(g, foot_below ? kNone_m2 : steps_.length2_m2[below],
+            foot_above ? kNone_m2 : steps_.length2_m2[above], f);
   out.push_back(f);
 }
 
-void FeatureImage::set_reach(const Pixel* pixel, Step to_lower, Step to_upper, Feature& f) const {
-  const bool up = to_upper.length2_m2 < to_lower.length2_m2;
-  if ((up ? to_upper : to_lower).length2_m2 < kFarApart_m * kFarApart_m) {
-    const Pixel& neighbour = up ? pixel[1] : pixel[-1];
-    f.dx_m = neighbour.x_m - f.x_m;
-    f.dy_m = neighbour.y_m - f.y_m;
-    f.dz_m = neighbour.z_m - f.z_m;
+void FeatureImage::set_reach(const Gathered& g, float to_lower2, float to_upper2,
+                             Feature& f) const {
+  const std::size_t ring = f.ring;
+  const bool up = to_upper2 < to_lower2;
+  if ((up ? to_upper2 : to_lower2) < kFarApart_m * kFarApart_m) {
+    const std::size_t neighbour = up ? ring + 1 : ring - 1;
+    f.dx_m = g.x_m[neighbour] - f.x_m;
+    f.dy_m = g.y_m[neighbour] - f.y_m;
+    f.dz_m = g.z_m[neighbour] - f.z_m;
     return;
   }
   // Across the ray. Without it what is thin and level, a bridge far ahead or a rail, holds the ring
   // that sees it at the height at which it was seen first, and with it the pitch.
-  const float flat_m = std::max(1e-3F, std::sqrt(f.x_m * f.x_m + f.y_m * f.y_m));
-  const float gap = gap_rad(f.ring);
+  const float flat_m = std::max(1e-3F, g.flat_m[ring]);
+  const float gap = gap_rad_[ring];
   f.dx_m = -gap * f.z_m * f.x_m / flat_m;
   f.dy_m = -gap * f.z_m * f.y_m / flat_m;
   f.dz_m = gap * flat_m;

@@ -66,36 +66,31 @@ class FeatureImage {
     std::int32_t t_ns;
   };
   using Filled = std::array<std::uint64_t, kMaxRings / 64>;  // a bit for each ring
-  /// Distances from the sensor's axis of a column's pixels; 0: empty.
-  using Flats = std::array<float, kMaxRings>;
-  /// A column as its own pixels see it. A firing may straddle two columns: where this one got no
-  /// return of a ring, that of the column before or after stands in if it is below the horizon. Of
-  /// the ground, that is; leaves and rails above hardly ever go on from column to column.
+  /// A column as its own pixels see it, an array for each value. A firing may straddle two columns:
+  /// where this one got no return of a ring, that of the column before or after stands in if it is
+  /// below the horizon. Of the ground, that is; leaves and rails above hardly ever go on from
+  /// column to column.
   struct Gathered {
-    std::array<Pixel, kMaxRings> pixels;  ///< valid where flats_m > 0
-    Flats flats_m;
+    std::array<float, kMaxRings> x_m, y_m, z_m;
+    std::array<float, kMaxRings> flat_m;  ///< from the sensor's axis; 0: empty
+    std::array<std::int32_t, kMaxRings> t_ns;
     Filled own;
   };
-  /// From a ring to the next, if both are on one surface; else neither flat nor steep.
-  struct Step {
-    float length2_m2 = std::numeric_limits<float>::infinity();
-    bool flat = false, steep = false;
+  /// From each ring's pixel to the next's, if both are on one surface; else neither flat nor steep.
+  /// Index 2 is the way from ring 0 to ring 1, and there is room around.
+  struct Steps {
+    std::array<float, kMaxRings + 3> length2_m2;
+    std::array<std::int32_t, kMaxRings + 3> flat, steep;  ///< 1 or 0
   };
   void project(std::span<const Return> returns);
   void note(int column);
   [[nodiscard]] int place_of(int column) const;
   void classify_until(int place);
   void classify_column(int column, std::vector<Feature>& out);
-  /// Between a ring and the next, which of the highest is the one below.
-  [[nodiscard]] float gap_rad(int ring) const;
-  void gather(int column, Gathered& gathered) const;
-  /// Of a pixel in a column.
-  void set_reach(const Pixel* pixel, Step to_lower, Step to_upper, Feature& f) const;
-  /// `steps`: to the ring, after the one to the ring below, before the two above.
-  void add_feature(const Pixel* column, int ring, const Step* steps,
-                   std::vector<Feature>& out) const;
-  /// From the pixel of a ring to that of the next, both filled.
-  static Step step_between(const Pixel* lower, const float* flats_m, float gap_rad);
+  void gather(int column, Gathered& g) const;
+  void step_up(const Gathered& g);
+  void add_feature(const Gathered& g, std::size_t ring, std::vector<Feature>& out) const;
+  void set_reach(const Gathered& g, float to_lower2, float to_upper2, Feature& f) const;
 
   int most_columns_;
   int columns_ = 0;  // for these beams
@@ -104,8 +99,10 @@ class FeatureImage {
   BeamTable beams_;
   std::vector<Pixel> pixels_;   // valid where filled
   std::vector<Filled> filled_;  // of every column; apart, because most returns only ask this
-  /// Of the column in hand, each to a ring from the one below, and room around.
-  std::array<Step, kMaxRings + 3> steps_;
+  /// Between a ring and the next, which of the highest is the one below.
+  std::array<float, kMaxRings> gap_rad_{};
+  Gathered gathered_;  // the column in hand
+  Steps steps_;
   std::vector<Feature> features_;
   std::vector<Feature> last_features_;  // of columns to the right of straight behind
 
