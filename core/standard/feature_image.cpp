@@ -24,7 +24,7 @@ constexpr float kSpread_rad = 0.35F;
 // With 64 rings, 512 to 1024 columns give the same errors. Fewer are worse, more cost time.
 constexpr int kMostPixels = 64 * 576;
 
-constexpr float kNone_m2 = std::numeric_limits<float>::infinity();
+constexpr float kNone_m2 = std::numeric_limits<float>::max();
 
 float gap_rad(const BeamTable& beams, int ring) {
   if (beams.ring_count < 2) return 0.0F;
