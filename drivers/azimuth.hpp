@@ -56,6 +56,12 @@ inline float wrap_rad(float rad) {
   return rad < -kPi ? more : (rad >= kPi ? less : rad);
 }
 
+/// Whether an azimuth surely stays in [-pi, pi) when no more than `change_rad` is added.
+inline bool is_off_seam(float rad, float change_rad) {
+  constexpr float kNearPi = 3.14F;  // room for rounding
+  return std::abs(rad) + change_rad < kNearPi;
+}
+
 /// Cosine, sine and counter-clockwise angle of each of the 36000 azimuths a packet can name.
 class AzimuthTable {
  public:

@@ -27,8 +27,9 @@ Symmetric outer(const Eigen::Vector3f& v) {
 
 /// std::floor() is a call where the processor need not have SSE 4.1.
 std::int32_t floor_of(double v) {
-  constexpr std::int32_t kAbove = 1 << 30;  // zero: from there on, to cut off is to round down
-  return static_cast<std::int32_t>(v + kAbove) - kAbove;
+  constexpr std::uint32_t kAbove = 1U << 30U;  // zero: from there, to cut off is to round down
+  return static_cast<std::int32_t>(
+      static_cast<std::uint32_t>(static_cast<std::int32_t>(v + kAbove)) - kAbove);
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ class CellMap {
   [[nodiscard]] Eigen::Vector3d center_of(const Index& i) const;
   [[nodiscard]] std::size_t slot_of(const Index& i) const;
   [[nodiscard]] static std::uint32_t tag_of(const Index& i);
-  /// From one cell to another, less than half a window away.
+  /// From one cell to another, the short way round the tags' window.
   [[nodiscard]] static Index between(std::uint32_t from_tag, std::uint32_t to_tag);
   [[nodiscard]] Sums sums_around(const Index& i) const;
   void fit(Cell& cell) const;
