@@ -223,7 +223,10 @@ TEST(Hostile, ClientsCannotDisturbThePoses) {
   const auto resident_mb = [](const json& h) {
     return h["health"]["realtime"]["resident_mb"].get<double>();
   };
-  EXPECT_LT(resident_mb(health), resident_mb(calm) + 16.0) << "a map has begun, nothing else grew";
+  if (!LILO_SANITIZED) {
+    EXPECT_LT(resident_mb(health), resident_mb(calm) + 16.0)
+        << "a map has begun, nothing else grew";
+  }
   int answers = 0;
   while (attacker.receive(milliseconds(0))) ++answers;
   EXPECT_LT(answers, 1000) << "20 000 requests in a moment";
