@@ -56,10 +56,12 @@ inline float wrap_rad(float rad) {
   return rad < -kPi ? more : (rad >= kPi ? less : rad);
 }
 
-/// Whether an azimuth surely stays in [-pi, pi) when no more than `change_rad` is added.
-inline bool is_off_seam(float rad, float change_rad) {
+/// Each into [-pi, pi). None is farther than `most_rad` from `about_rad`, so mostly none is
+/// outside.
+inline void wrap_around(float about_rad, float most_rad, std::span<float> azimuths_rad) {
   constexpr float kNearPi = 3.14F;  // room for rounding
-  return std::abs(rad) + change_rad < kNearPi;
+  if (std::abs(about_rad) + most_rad < kNearPi) return;
+  for (float& rad : azimuths_rad) rad = wrap_rad(rad);
 }
 
 /// Cosine, sine and counter-clockwise angle of each of the 36000 azimuths a packet can name.

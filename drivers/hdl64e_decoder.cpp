@@ -168,8 +168,7 @@ Hdl64eDecoder::Bank Hdl64eDecoder::project(int block) const {
     bank.in_range[k] = static_cast<std::int32_t>(steps >= lasers_.min_steps[i]) &
                        static_cast<std::int32_t>(steps <= lasers_.max_steps[i]);
   }
-  if (is_off_seam(head.ccw_rad, lasers_.largest_b_rad)) return bank;
-  for (float& azimuth_rad : bank.azimuth_rad) azimuth_rad = wrap_rad(azimuth_rad);
+  wrap_around(head.ccw_rad, lasers_.largest_b_rad, bank.azimuth_rad);
   return bank;
 }
 

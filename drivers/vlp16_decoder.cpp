@@ -189,8 +189,7 @@ Vlp16Decoder::Sequence Vlp16Decoder::project(int block, int sequence) const {
     seen.in_range[k] = static_cast<std::int32_t>(steps >= min_steps) &
                        static_cast<std::int32_t>(steps <= max_steps);
   }
-  if (is_off_seam(base.ccw_rad, turn_.largest_rad)) return seen;
-  for (float& azimuth_rad : seen.azimuth_rad) azimuth_rad = wrap_rad(azimuth_rad);
+  wrap_around(base.ccw_rad, turn_.largest_rad, seen.azimuth_rad);
   return seen;
 }
 
