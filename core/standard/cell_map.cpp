@@ -17,7 +17,8 @@ constexpr float kFewPoints_m = 0.1F;  // 1 sigma of what one point says of the s
 constexpr float kThin = 0.065F;
 constexpr std::uint32_t kYoung = 4;  // keyframes
 constexpr std::size_t kSweepShare = 64;
-constexpr int kLevelBits = 10;  // of a tag, the uppermost: how high the cell lies
+// Of a tag, from the lowest: x, y, and how high the cell lies.
+constexpr int kAcrossBits = 11, kLevelBits = 10;
 
 Symmetric outer(const Eigen::Vector3f& v) {
   Symmetric o;
@@ -36,8 +37,7 @@ std::int32_t floor_of(double v) {
 
 CellMap::CellMap(const CellMapConfig& config)
     : config_(config),
-      cell_m_(static_cast<double>(config.cell_m)),
-      per_m_(1.0 / cell_m_),
+      per_m_(1.0 / static_cast<double>(config.cell_m)),
       kept_(1.0F - 1.0F / config.memory),
       mask_(std::bit_ceil(static_cast<std::size_t>(config.capacity) * 2) - 1),
       slots_(mask_ + 1) {
@@ -52,7 +52,7 @@ CellMap::Index CellMap::index_of(const Eigen::Vector3d& p) const {
 }
 
 Eigen::Vector3d CellMap::center_of(const Index& i) const {
-  return cell_m_ * Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5);
+  return static_cast<double>(config_.cell_m) * Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5);
 }
 
 /// Cells above each other lie side by side: a fit looks at nine threes of them.
@@ -65,9 +65,10 @@ std::size_t CellMap::slot_of(const Index& i) const {
 }
 
 std::uint32_t CellMap::tag_of(const Index& i) {
-  return (static_cast<std::uint32_t>(i.x) & 0x7FFU) |
-         (static_cast<std::uint32_t>(i.y) & 0x7FFU) << 11U |
-         (static_cast<std::uint32_t>(i.z) & 0x3FFU) << 22U;
+  constexpr std::uint32_t kAcross = (1U << kAcrossBits) - 1U;
+  return (static_cast<std::uint32_t>(i.x) & kAcross) |
+         (static_cast<std::uint32_t>(i.y) & kAcross) << kAcrossBits |
+         static_cast<std::uint32_t>(i.z) << (2 * kAcrossBits);
 }
 
 CellMap::Index CellMap::between(std::uint32_t from_tag, std::uint32_t to_tag) {
@@ -75,7 +76,7 @@ CellMap::Index CellMap::between(std::uint32_t from_tag, std::uint32_t to_tag) {
     const std::uint32_t cut = ((to_tag >> low) - (from_tag >> low)) << (32 - bits);
     return static_cast<std::int32_t>(cut) >> (32 - bits);
   };
-  return {part(0, 11), part(11, 11), part(22, kLevelBits)};
+  return {part(0, kAcrossBits), part(kAcrossBits, kAcrossBits), part(2 * kAcrossBits, kLevelBits)};
 }
 
 CellMap::Place CellMap::place_of(const Eigen::Vector3d& point_m, std::int32_t last) const {
@@ -114,7 +115,7 @@ std::int32_t CellMap::open(const Place& place) {
   }
   if (used_ == config_.capacity) {
     ++refused_;
-    return -1;
+    return kNone;
   }
   auto at = static_cast<std::int32_t>(cells_.size());
   if (free_.empty()) {
@@ -133,12 +134,12 @@ std::int32_t CellMap::open(const Place& place) {
   return at;
 }
 
-void CellMap::add(std::int32_t at, const Index& index, const Eigen::Vector3d& point_m,
+void CellMap::add(std::int32_t at, const Place& place, const Eigen::Vector3d& point_m,
                   const Eigen::Vector3f& reach_m) {
   if (at < 0) return;
   Sums& sums = sums_[static_cast<std::size_t>(at)];
   const float kept = sums.count >= config_.memory ? kept_ : 1.0F;
-  const Eigen::Vector3f p = (point_m - center_of(index)).cast<float>();
+  const Eigen::Vector3f p = (point_m - center_of(place.index)).cast<float>();
   // Seen through a window of three cells, a longer reach is just "all of it".
   const float window2 = 9.0F * config_.cell_m * config_.cell_m;
   const float reach2 = reach_m.squaredNorm();
@@ -156,7 +157,7 @@ Match CellMap::match(std::int32_t at, const Eigen::Vector3d& point_m) {
   return {(point_m - center_of(cell.index)).cast<float>() - cell.mean_m, &cell.information};
 }
 
-CellMap::Sums CellMap::sums_around(const Index& i) const {
+std::size_t CellMap::neighbours_of(const Index& i, Neighbours& found) const {
   std::array<std::size_t, 9> slots;  // of the lowest in each column of three
   std::array<std::uint32_t, 9> tags;
   std::size_t n = 0;
@@ -168,11 +169,6 @@ CellMap::Sums CellMap::sums_around(const Index& i) const {
       __builtin_prefetch(&slots_[slots[n]]);
     }
   }
-  struct Neighbour {
-    std::int32_t at;
-    float x_m, y_m, z_m;  // from here
-  };
-  std::array<Neighbour, 27> found;
   std::size_t count = 0;
   const auto cells_m = [&](std::size_t cells) {
     return config_.cell_m * (static_cast<float>(cells) - 1.0F);
@@ -191,15 +187,21 @@ CellMap::Sums CellMap::sums_around(const Index& i) const {
       __builtin_prefetch(&sums_[static_cast<std::size_t>(slot.at)]);
     }
   }
-  float points = 0.0F;
+  return count;
+}
+
+CellMap::Sums CellMap::sums_around(const Index& i) const {
+  Neighbours neighbours;
+  const std::size_t n = neighbours_of(i, neighbours);
+  float count = 0.0F;
   Eigen::Vector3f point = Eigen::Vector3f::Zero();
   Symmetric square = Symmetric::Zero();
-  for (n = 0; n < count; ++n) {
-    const Neighbour& o = found[n];
+  for (std::size_t k = 0; k < n; ++k) {
+    const Neighbour& o = neighbours[k];
     const Sums& one = sums_[static_cast<std::size_t>(o.at)];
     const Eigen::Vector3f& p = one.point;
     const Eigen::Vector3f q = p + one.count * Eigen::Vector3f(o.x_m, o.y_m, o.z_m);
-    points += one.count;
+    count += one.count;
     point += q;
     // o p' + p o' + count o o'
     square[0] += one.square[0] + o.x_m * (p.x() + q.x());
@@ -209,7 +211,7 @@ CellMap::Sums CellMap::sums_around(const Index& i) const {
     square[4] += one.square[4] + (o.y_m * q.z() + o.z_m * p.y());
     square[5] += one.square[5] + o.z_m * (p.z() + q.z());
   }
-  return {points, point, square};
+  return {count, point, square};
 }
 
 void CellMap::fit(Cell& cell) const {
@@ -272,11 +274,12 @@ void CellMap::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
   const Index center = index_of(center_m);
   const std::uint32_t center_tag = tag_of(center);
   const Eigen::Vector3d rest_m = center_of(center) - center_m;
+  const auto cell_m = static_cast<double>(config_.cell_m);
   for (std::size_t n = 0; n < share; ++n) {
     // The tag tells where a cell is: to read each of them would take most of the time.
     if (slots_[sweep_].at >= 0) {
       const Index from = between(center_tag, slots_[sweep_].tag);
-      const Eigen::Vector3d from_m = cell_m_ * Eigen::Vector3d(from.x, from.y, from.z) + rest_m;
+      const Eigen::Vector3d from_m = cell_m * Eigen::Vector3d(from.x, from.y, from.z) + rest_m;
       if (from_m.squaredNorm() > radius_m * radius_m) {
         remove(sweep_);
         continue;  // another cell may have moved into this slot

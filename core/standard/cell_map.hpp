@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -63,7 +64,7 @@ class CellMap {
   /// ring on the ground looks like a plane through its own rays, blind to pitch ("cone lock").
   void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
     const Place place = place_of(point_m);
-    add(open(place), place.index, point_m, reach_m);
+    add(open(place), place, point_m, reach_m);
   }
 
   /// The distribution around a point. Fits are cached: a young cell is fitted again after every
@@ -78,7 +79,7 @@ class CellMap {
   Match match(std::int32_t at, const Eigen::Vector3d& point_m);
   /// The cell there, made if missing.
   std::int32_t open(const Place& place);
-  void add(std::int32_t at, const Index& index, const Eigen::Vector3d& point_m,
+  void add(std::int32_t at, const Place& place, const Eigen::Vector3d& point_m,
            const Eigen::Vector3f& reach_m);
 
   void end_keyframe() { ++keyframe_; }
@@ -119,18 +120,26 @@ class CellMap {
     Symmetric square = Symmetric::Zero();
   };
 
+  struct Neighbour {
+    std::int32_t at;
+    float x_m, y_m, z_m;  // from the one in the middle
+  };
+  using Neighbours = std::array<Neighbour, 27>;
+
   [[nodiscard]] Index index_of(const Eigen::Vector3d& p) const;
   [[nodiscard]] Eigen::Vector3d center_of(const Index& i) const;
   [[nodiscard]] std::size_t slot_of(const Index& i) const;
   [[nodiscard]] static std::uint32_t tag_of(const Index& i);
   /// From one cell to another, the short way round the tags' window.
   [[nodiscard]] static Index between(std::uint32_t from_tag, std::uint32_t to_tag);
+  /// Of the 27 cells around and including one, those that are there; how many.
+  std::size_t neighbours_of(const Index& i, Neighbours& found) const;
   [[nodiscard]] Sums sums_around(const Index& i) const;
   void fit(Cell& cell) const;
   void remove(std::size_t slot);
 
   CellMapConfig config_;
-  double cell_m_, per_m_;
+  double per_m_;
   float kept_;  // of what a cell remembers, when one more point comes
   std::size_t mask_;
   std::vector<Slot> slots_;

@@ -68,9 +68,8 @@ void FeatureImage::begin(const BeamTable& beams) {
   pixels_.resize(size);
   steps_ = {};
   steps_.length2_m2.fill(kNone_m2);
-  for (std::size_t ring = 0; ring < static_cast<std::size_t>(std::max(beams.ring_count, 1));
-       ++ring) {
-    gap_rad_[ring] = gap_rad(beams, static_cast<int>(ring));
+  for (int ring = 0; ring < beams.ring_count; ++ring) {
+    gap_rad_[static_cast<std::size_t>(ring)] = gap_rad(beams, ring);
   }
   filled_.assign(static_cast<std::size_t>(columns_), Filled{});
   for (std::vector<Feature>* features : {&features_, &last_features_}) {
@@ -178,6 +177,11 @@ void FeatureImage::gather(int column, Gathered& g) const {
       }
     }
   }
+  set_flat(taken, g);
+}
+
+void FeatureImage::set_flat(const Filled& taken, Gathered& g) const {
+  const auto rows = static_cast<std::size_t>(beams_.ring_count);
   for (std::size_t k = 0; k < rows; ++k) {
     g.flat_m[k] = std::sqrt(g.x_m[k] * g.x_m[k] + g.y_m[k] * g.y_m[k]);
   }
@@ -215,11 +219,12 @@ void FeatureImage::step_up(const Gathered& g) {
 }
 
 void FeatureImage::classify_column(int column, std::vector<Feature>& out) {
-  gather(column, gathered_);
-  step_up(gathered_);
-  for (std::size_t word = 0; word < gathered_.own.size(); ++word) {
-    for (std::uint64_t own = gathered_.own[word]; own != 0; own &= own - 1) {
-      add_feature(gathered_, word * 64 + static_cast<std::size_t>(std::countr_zero(own)), out);
+  Gathered gathered;
+  gather(column, gathered);
+  step_up(gathered);
+  for (std::size_t word = 0; word < gathered.own.size(); ++word) {
+    for (std::uint64_t own = gathered.own[word]; own != 0; own &= own - 1) {
+      add_feature(gathered, word * 64 + static_cast<std::size_t>(std::countr_zero(own)), out);
     }
   }
 }

@@ -88,6 +88,8 @@ class FeatureImage {
   void classify_until(int place);
   void classify_column(int column, std::vector<Feature>& out);
   void gather(int column, Gathered& g) const;
+  /// `taken`: the rings that have a pixel.
+  void set_flat(const Filled& taken, Gathered& g) const;
   void step_up(const Gathered& g);
   void add_feature(const Gathered& g, std::size_t ring, std::vector<Feature>& out) const;
   void set_reach(const Gathered& g, float to_lower2, float to_upper2, Feature& f) const;
@@ -101,8 +103,7 @@ class FeatureImage {
   std::vector<Filled> filled_;  // of every column; apart, because most returns only ask this
   /// Between a ring and the next, which of the highest is the one below.
   std::array<float, kMaxRings> gap_rad_{};
-  Gathered gathered_;  // the column in hand
-  Steps steps_;
+  Steps steps_;  // of the column in hand
   std::vector<Feature> features_;
   std::vector<Feature> last_features_;  // of columns to the right of straight behind
 

@@ -75,8 +75,8 @@ void Tracker::insert_held() {
       const Feature& f = held_.features[first + k];
       const Waiting& one = waiting[k];
       const Eigen::Vector3f reach = sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m});
-      maps_.fine(f.kind).add(one.fine_cell, one.fine.index, one.point_m, reach);
-      maps_.coarse(f.kind).add(one.coarse_cell, one.coarse.index, one.point_m, reach);
+      maps_.fine(f.kind).add(one.fine_cell, one.fine, one.point_m, reach);
+      maps_.coarse(f.kind).add(one.coarse_cell, one.coarse, one.point_m, reach);
     }
   }
   maps_.end_keyframe();

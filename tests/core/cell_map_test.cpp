@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -48,6 +49,21 @@ TEST_F(Filled, ATrunkInformsAcrossItsAxisOnly) {
   EXPECT_GT(O(0, 0), 100.0F);
   EXPECT_GT(O(1, 1), 100.0F);
   EXPECT_LT(O(2, 2), 0.01F * O(0, 0));
+}
+
+// From step to step of an alignment a point stays in its cell or goes over to one beside it.
+TEST_F(Filled, FindsTheCellWhereverThePointWasBefore) {
+  for (int k = 0; k < 2000; ++k) map_.insert({uniform(0, 5), uniform(0, 5), 0.2}, no_reach_);
+  int same = 0, other = 0, gone = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const Eigen::Vector3d before(uniform(0, 5), uniform(0, 5), 0.2);
+    const Eigen::Vector3d now = before + Eigen::Vector3d(uniform(-1, 1), 0.0, uniform(-0.3, 0.3));
+    const std::int32_t last = map_.cell_at(map_.place_of(before));
+    const std::int32_t cell = map_.cell_at(map_.place_of(now, last));
+    EXPECT_EQ(cell, map_.cell_at(map_.place_of(now)));
+    ++(cell == CellMap::kNone ? gone : cell == last ? same : other);
+  }
+  EXPECT_GT(std::min({same, other, gone}), 100);
 }
 
 // What is seen of a thing changes as the sensor passes it; the map must follow.
