@@ -19,6 +19,9 @@ constexpr std::uint32_t kYoung = 4;  // keyframes
 constexpr std::size_t kSweepShare = 64;
 // Of a tag, from the lowest: x, y, and how high the cell lies.
 constexpr int kAcrossBits = 11, kLevelBits = 10;
+constexpr std::uint32_t kTagAbove = 1U << (2 * kAcrossBits);
+constexpr int kBlockBits = 2;
+constexpr std::size_t kLevelSlots = 1U << (2 * kBlockBits);
 
 Symmetric outer(const Eigen::Vector3f& v) {
   Symmetric o;
@@ -55,13 +58,19 @@ Eigen::Vector3d CellMap::center_of(const Index& i) const {
   return static_cast<double>(config_.cell_m) * Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5);
 }
 
-/// Cells above each other lie side by side: a fit looks at nine threes of them.
+/// 4 x 4 cells of a level lie side by side, and after them those above: who looks around a cell, or
+/// for features beside each other, mostly reads the same few cache lines.
 std::size_t CellMap::slot_of(const Index& i) const {
-  auto h = static_cast<std::uint64_t>(static_cast<std::uint32_t>(i.x)) * 0x9E3779B97F4A7C15ULL;
-  h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(i.y)) * 0xC2B2AE3D27D4EB4FULL;
+  constexpr std::int32_t kInside = (1 << kBlockBits) - 1;
+  const auto block = [](std::int32_t v) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v >> kBlockBits));
+  };
+  std::uint64_t h = block(i.x) * 0x9E3779B97F4A7C15ULL ^ block(i.y) * 0xC2B2AE3D27D4EB4FULL;
   h ^= h >> 29U;
   h = h * 0xBF58476D1CE4E5B9ULL >> 20U;
-  return static_cast<std::size_t>(h + static_cast<std::uint32_t>(i.z)) & mask_;
+  const auto inside = static_cast<std::uint32_t>((i.y & kInside) << kBlockBits | (i.x & kInside));
+  return static_cast<std::size_t>((h + static_cast<std::uint32_t>(i.z)) * kLevelSlots + inside) &
+         mask_;
 }
 
 std::uint32_t CellMap::tag_of(const Index& i) {
@@ -96,13 +105,16 @@ std::int32_t CellMap::cell_at(const Place& place) const {
     if (cells_[static_cast<std::size_t>(place.last)].index == place.index) return place.last;
     slot = slot_of(place.index);
   }
-  const std::uint32_t tag = tag_of(place.index);
-  for (; slots_[slot].at >= 0; slot = (slot + 1) & mask_) {
-    if (slots_[slot].tag != tag) continue;
-    __builtin_prefetch(&cells_[static_cast<std::size_t>(slots_[slot].at)]);
-    return slots_[slot].at;
+  const std::int32_t at = cell_from(slot, tag_of(place.index));
+  if (at != kNone) __builtin_prefetch(&cells_[static_cast<std::size_t>(at)]);
+  return at;
+}
+
+std::int32_t CellMap::cell_from(std::size_t slot, std::uint32_t tag) const {
+  for (;; slot = (slot + 1) & mask_) {
+    const Slot& here = slots_[slot];
+    if (here.at == kNone || here.tag == tag) return here.at;
   }
-  return kNone;
 }
 
 std::int32_t CellMap::open(const Place& place) {
@@ -158,34 +170,32 @@ Match CellMap::match(std::int32_t at, const Eigen::Vector3d& point_m) {
 }
 
 std::size_t CellMap::neighbours_of(const Index& i, Neighbours& found) const {
-  std::array<std::size_t, 9> slots;  // of the lowest in each column of three
-  std::array<std::uint32_t, 9> tags;
+  std::array<std::size_t, Neighbours{}.size()> slots;
+  std::array<std::uint32_t, Neighbours{}.size()> tags;
   std::size_t n = 0;
   for (std::int32_t x = -1; x <= 1; ++x) {
-    for (std::int32_t y = -1; y <= 1; ++y, ++n) {
+    for (std::int32_t y = -1; y <= 1; ++y) {
       const Index lowest{i.x + x, i.y + y, i.z - 1};
-      slots[n] = slot_of(lowest);
-      tags[n] = tag_of(lowest);
-      __builtin_prefetch(&slots_[slots[n]]);
+      std::size_t slot = slot_of(lowest);
+      std::uint32_t tag = tag_of(lowest);
+      for (int level = 0; level < 3; ++level, ++n) {
+        slots[n] = slot;
+        tags[n] = tag;
+        __builtin_prefetch(&slots_[slot]);
+        slot = (slot + kLevelSlots) & mask_;
+        tag += kTagAbove;
+      }
     }
   }
-  std::size_t count = 0;
   const auto cells_m = [&](std::size_t cells) {
     return config_.cell_m * (static_cast<float>(cells) - 1.0F);
   };
+  std::size_t count = 0;
   for (n = 0; n < slots.size(); ++n) {
-    // The highest belongs two slots on: up to there an empty one ends nothing.
-    for (std::size_t k = 0;; ++k) {
-      const Slot& slot = slots_[(slots[n] + k) & mask_];
-      if (slot.at < 0) {
-        if (k >= 2) break;
-        continue;
-      }
-      const std::uint32_t level = std::rotl(slot.tag - tags[n], kLevelBits);  // if the same column
-      if (level > 2) continue;
-      found[count++] = {slot.at, cells_m(n / 3), cells_m(n % 3), cells_m(level)};
-      __builtin_prefetch(&sums_[static_cast<std::size_t>(slot.at)]);
-    }
+    const std::int32_t at = cell_from(slots[n], tags[n]);
+    if (at == kNone) continue;
+    __builtin_prefetch(&sums_[static_cast<std::size_t>(at)]);
+    found[count++] = {at, cells_m(n / 9), cells_m(n / 3 % 3), cells_m(n % 3)};
   }
   return count;
 }

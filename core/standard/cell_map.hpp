@@ -102,7 +102,7 @@ class CellMap {
   /// window of 2048 x 2048 x 1024 cells, so that a cell need not be read to know that it is
   /// another.
   struct Slot {
-    std::int32_t at = -1;  // in cells_ and sums_; -1: empty
+    std::int32_t at = kNone;  // in cells_ and sums_
     std::uint32_t tag = 0;
   };
   /// What find() reads: one cache line.
@@ -132,6 +132,8 @@ class CellMap {
   [[nodiscard]] static std::uint32_t tag_of(const Index& i);
   /// From one cell to another, the short way round the tags' window.
   [[nodiscard]] static Index between(std::uint32_t from_tag, std::uint32_t to_tag);
+  /// The cell with this tag, its own slot or where it came from there.
+  [[nodiscard]] std::int32_t cell_from(std::size_t slot, std::uint32_t tag) const;
   /// Of the 27 cells around and including one, those that are there; how many.
   std::size_t neighbours_of(const Index& i, Neighbours& found) const;
   [[nodiscard]] Sums sums_around(const Index& i) const;
