@@ -55,8 +55,8 @@ int LocalMaps::size() const {
          structure_coarse.size();
 }
 
-/// Places the next features and looks for their cells in the fine maps, many at a time so that the
-/// memory's answers overlap. Returns how many.
+/// Places the next features and looks for their cells in the fine maps. Many at a time, here and in
+/// match(), so that the memory's answers overlap. Returns how many.
 std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t first,
                             std::size_t stride, const LocalMaps& maps) {
   std::size_t n = 0;
@@ -64,16 +64,36 @@ std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t fi
     Asked& one = asked_[n];
     const Feature& f = features[k];
     one.feature = &f;
+    one.last = &last_[k];
     one.turned_m = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
     one.point_m = one.turned_m.cast<double>() + sampled_.origin_m(f.s);
-    one.place = maps.fine(f.kind).place_of(one.point_m, last_[k].fine);
+    one.place = maps.fine(f.kind).place_of(one.point_m, one.last->fine);
   }
   for (std::size_t j = 0; j < n; ++j) {
     Asked& one = asked_[j];
     one.cell = maps.fine(one.feature->kind).cell_at(one.place);
-    last_[first + j * stride].fine = one.cell;
+    one.last->fine = one.cell;
   }
   return n;
+}
+
+/// Where the fine maps know too little the coarse ones are asked.
+void Solver::match(std::span<Asked> asked, LocalMaps& maps) {
+  std::array<Asked*, kAtATime> unmatched;
+  std::size_t n = 0;
+  for (Asked& one : asked) {
+    one.match = maps.fine(one.feature->kind).match(one.cell, one.point_m);
+    if (one.match.information != nullptr) continue;
+    one.place = maps.coarse(one.feature->kind).place_of(one.point_m, one.last->coarse);
+    unmatched[n++] = &one;
+  }
+  for (Asked* one : std::span(unmatched).first(n)) {
+    one->cell = maps.coarse(one->feature->kind).cell_at(one->place);
+    one->last->coarse = one->cell;
+  }
+  for (Asked* one : std::span(unmatched).first(n)) {
+    one->match = maps.coarse(one->feature->kind).match(one->cell, one->point_m);
+  }
 }
 
 void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
@@ -86,18 +106,12 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   for (std::size_t k = 0, n = 0; k < features.size(); k += n * stride) {
     n = look_up(features, k, stride, maps);
     solution.asked += static_cast<int>(n);
-    for (std::size_t j = 0; j < n; ++j) {
-      const Asked& one = asked_[j];
-      Match match = maps.fine(one.feature->kind).match(one.cell, one.point_m);
-      if (match.information == nullptr) {
-        CellMap& coarse = maps.coarse(one.feature->kind);
-        std::int32_t& cell = last_[k + j * stride].coarse;
-        cell = coarse.cell_at(coarse.place_of(one.point_m, cell));
-        match = coarse.match(cell, one.point_m);
-      }
-      if (match.information == nullptr) continue;
+    const std::span asked = std::span(asked_).first(n);
+    match(asked, maps);
+    for (const Asked& one : asked) {
+      if (one.match.information == nullptr) continue;
       ++solution.matched;
-      add_residual(one, match, data_weight, sums);
+      add_residual(one, data_weight, sums);
     }
   }
   solution.inliers = sums.weights;
@@ -105,10 +119,10 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   solution.mean_square = sums.weights > 0.0 ? sums.squares / sums.weights : 0.0;
 }
 
-void Solver::add_residual(const Asked& one, const Match& match, float data_weight, Sums& sums) {
+void Solver::add_residual(const Asked& one, float data_weight, Sums& sums) {
   const bool ground = one.feature->kind == Kind::ground;
-  const Eigen::Vector3f& r = match.from_mean_m;
-  const Symmetric& i = *match.information;
+  const Eigen::Vector3f& r = one.match.from_mean_m;
+  const Symmetric& i = *one.match.information;
   const Eigen::Matrix3f O = matrix_of(i);
   const Eigen::Vector3f Or = O * r;
   const float square = r.dot(Or);

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <span>
 #include <vector>
 
 /// Alignment of one scan with the local map: Gauss-Newton over the knots of its trajectory.
@@ -72,17 +73,20 @@ class Solver {
 
  private:
   static constexpr int kBins = 32;  // a scan's residuals share one of so many instants
-  /// A feature under the trajectory, and its cell.
+  static constexpr std::size_t kAtATime = 32;
+  /// Where a feature was in the step before.
+  struct Cells {
+    std::int32_t fine = CellMap::kNone, coarse = CellMap::kNone;
+  };
+  /// A feature under the trajectory, and what it matches.
   struct Asked {
     const Feature* feature = nullptr;
+    Cells* last = nullptr;
     Eigen::Vector3f turned_m;  // in the odometry's axes, from the sensor
     Eigen::Vector3d point_m;   // in the odometry's frame
     CellMap::Place place;
     std::int32_t cell = CellMap::kNone;
-  };
-  /// Where a feature was in the step before.
-  struct Cells {
-    std::int32_t fine = CellMap::kNone, coarse = CellMap::kNone;
+    Match match;
   };
   struct Sums {
     double weights = 0.0, squares = 0.0, structure = 0.0;
@@ -91,12 +95,13 @@ class Solver {
                   Solution& solution);
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride,
                       const LocalMaps& maps);
-  void add_residual(const Asked& one, const Match& match, float data_weight, Sums& sums);
+  static void match(std::span<Asked> asked, LocalMaps& maps);
+  void add_residual(const Asked& one, float data_weight, Sums& sums);
 
   SolverConfig config_;
   Sampled sampled_;
   std::array<ResidualSums, kBins + 1> bins_;
-  std::array<Asked, 32> asked_;
+  std::array<Asked, kAtATime> asked_;
   std::vector<Cells> last_;
 };
 
