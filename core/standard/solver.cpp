@@ -152,7 +152,9 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   // Far from the solution a part of the features shows the way as well as all of them.
   constexpr std::size_t kCoarseStride = 4;
   constexpr double kNear_rad = 3e-3, kNear_m = 0.03;
-  constexpr double kEnough_rad = 1.5e-4, kEnough_m = 1.5e-3;
+  constexpr double kEnough_rad = 3e-4, kEnough_m = 3e-3;
+  // Weights and cells follow each step, so that the next would be a fifth to a quarter of it.
+  constexpr double kFurther = 1.2;
   std::size_t stride = kCoarseStride;
   Solution solution;
   const int n = kKnotSize * (config_.segments + 1);
@@ -185,7 +187,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     const Eigen::LDLT<NormalMatrix> factors(H);
     const Unknowns step = factors.solve(b);
     if (!step.allFinite()) break;
-    solution.trajectory.knots += step;
+    solution.trajectory.knots += (stride == 1 ? kFurther : 1.0) * step;
     ++solution.iterations;
     const Vector6d end = step.segment<6>(n - kKnotSize);
     const double turned_rad = end.head<3>().norm(), moved_m = end.tail<3>().norm();
