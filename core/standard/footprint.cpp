@@ -16,14 +16,24 @@ void Outline::reserve(std::size_t size) {
   for (std::vector<float>* part : {&x_m, &y_m, &z_m, &s}) part->reserve(size);
 }
 
+std::size_t Outline::before(std::size_t part, std::size_t size) {
+  return part * (size / kParts) + std::min(part, size % kParts);
+}
+
 void Outline::assign(const std::vector<Feature>& features) {
-  for (std::vector<float>* part : {&x_m, &y_m, &z_m, &s}) part->clear();
+  const auto stands = [](const Feature& f) { return f.kind == Kind::structure; };
+  const auto size =
+      static_cast<std::size_t>(std::count_if(features.begin(), features.end(), stands));
+  for (std::vector<float>* part : {&x_m, &y_m, &z_m, &s}) part->resize(size);
+  std::size_t n = 0;
   for (const Feature& f : features) {
-    if (f.kind != Kind::structure) continue;
-    x_m.push_back(f.x_m);
-    y_m.push_back(f.y_m);
-    z_m.push_back(f.z_m);
-    s.push_back(f.s);
+    if (!stands(f)) continue;
+    const std::size_t k = before(n % kParts, size) + n / kParts;
+    x_m[k] = f.x_m;
+    y_m[k] = f.y_m;
+    z_m[k] = f.z_m;
+    s[k] = f.s;
+    ++n;
   }
 }
 
@@ -35,7 +45,7 @@ void Footprint::clear() {
   cells_ = 0;
 }
 
-void Footprint::add(const Outline& scan, const Pose& T_begin, const Pose& T_end) {
+void Footprint::add(const Outline& scan, const Pose& T_begin, const Pose& T_end, Share share) {
   constexpr auto kEdge = static_cast<float>(kSide);
   // Within one scan the turn is small: the middle of it serves all, the way travelled each its own.
   const Eigen::Matrix<float, 2, 3> R =
@@ -47,7 +57,8 @@ void Footprint::add(const Outline& scan, const Pose& T_begin, const Pose& T_end)
       (kPerMetre * (T_end.translation_m - T_begin.translation_m).head<2>()).cast<float>();
   const float xx = R(0, 0), xy = R(0, 1), xz = R(0, 2), x0 = begin.x(), xs = way.x();
   const float yx = R(1, 0), yy = R(1, 1), yz = R(1, 2), y0 = begin.y(), ys = way.y();
-  const std::size_t n = std::min(scan.s.size(), at_.size());
+  const std::size_t part = share == Share::all ? Outline::kParts : 1;
+  const std::size_t n = std::min(Outline::before(part, scan.s.size()), at_.size());
   std::uint32_t* at = at_.data();
   for (std::size_t k = 0; k < n; ++k) {
     const float x = xx * scan.x_m[k] + xy * scan.y_m[k] + xz * scan.z_m[k] + x0 + scan.s[k] * xs;

@@ -10,15 +10,22 @@
 namespace lilo::standard {
 
 /// What stands in a scan, each in the sensor's frame at its firing. An array per coordinate, so
-/// that several are moved at a time.
+/// that several are moved at a time. Every fourth comes first, then the others.
 struct Outline {
   std::vector<float> x_m, y_m, z_m;
   std::vector<float> s;  ///< as Feature::s
 
+  static constexpr std::size_t kParts = 4;
+  /// How many of `size` come before `part`: all for kParts.
+  static std::size_t before(std::size_t part, std::size_t size);
   void reserve(std::size_t size);
   /// Ground counts for nothing, it looks the same at every speed.
   void assign(const std::vector<Feature>& features);
 };
+
+/// How much of the scans is laid over each other: where motions differ clearly, a part of them
+/// tells.
+enum class Share : std::uint8_t { quarter, all };
 
 /// The area that what stands takes up on the ground, seen from above, when scans are laid over each
 /// other as a motion says: trunks and walls coincide under the true one and smear under any other.
@@ -36,7 +43,7 @@ class Footprint {
 
   /// Adds one scan that lasted from `T_begin` to `T_end`, at constant velocity. What lies 128 m
   /// from the origin along an axis is left out, and so are more than `most`.
-  void add(const Outline& scan, const Pose& T_begin, const Pose& T_end);
+  void add(const Outline& scan, const Pose& T_begin, const Pose& T_end, Share share = Share::all);
 
  private:
   std::vector<std::uint32_t> at_;

@@ -38,10 +38,15 @@ class MotionCheck {
     Pose T_begin, T_end;
     double span_s = 0.0;
     std::int64_t end_ns = 0;
-    int cells = 0;  // by itself
   };
-  void add(const Seen& one, const Eigen::Vector2d& more_mps);
-  int cells_under(const Eigen::Vector2d& more_mps);
+  /// Cells taken up under the motion tracked, and the least under others.
+  struct Looks {
+    int tracked = 0, least = 0;
+  };
+  void add(const Seen& one, const Eigen::Vector2d& more_mps, Share share);
+  int cells_under(const Eigen::Vector2d& more_mps, Share share);
+  Looks look(const Eigen::Vector2d& axis, Share share);
+  bool is_clearly_better(const Eigen::Vector2d& axis);
 
   std::array<Seen, kScans> seen_;
   std::size_t count_ = 0, newest_ = 0;

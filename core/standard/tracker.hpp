@@ -94,13 +94,7 @@ class Tracker {
   static void believe(const Start& start, Prior& prior);
   Solution refine(Start& start);
   Solution start();
-  Look look(const Twist& twist);
-  [[nodiscard]] int cells_as_tracked();
   [[nodiscard]] Twist twist_so_far() const;
-  Look look_around(const Twist& about);
-  [[nodiscard]] bool is_less(int cells, int other_cells, double sigmas) const;
-  void look_everywhere();
-  Start most_compact();
   Start best_start(const Twist& tracked);
   void rehearse(Start start);
   void decide();
@@ -108,6 +102,18 @@ class Tracker {
   static void note_track(Seen& seen, const Pose& T_begin, const Pose& T_end);
   void note_prediction(Seen& seen) const;
   void remember(const std::vector<Feature>& all, const std::vector<Feature>& chosen);
+
+  // The search for the motion at the start, in tracker_search.cpp.
+  static bool differ(const Twist& a, const Twist& b, double mps, double radps);
+  [[nodiscard]] int cells_as_tracked();
+  Look look(const Twist& twist, Share share = Share::all);
+  Look look_around(const Twist& about);
+  /// Whether what was seen speaks for the motion with `cells` and against the other.
+  [[nodiscard]] bool speaks_for(int cells, int other_cells, double sigmas) const;
+  void look_everywhere();
+  void look_closer();
+  [[nodiscard]] Look least_look() const;
+  Start most_compact();
 
   OdometryConfig config_;
   Selection selection_;

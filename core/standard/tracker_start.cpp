@@ -1,30 +1,17 @@
 #include "core/standard/tracker.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-
-/// How the tracker finds the motion it was switched on in.
+/// How the tracker starts in motion.
 ///
-/// One scan alone tells no motion, and is bent by it. Two scans laid over each other mostly tell:
-/// all speeds a vehicle may have are tried, and the one under which what stands takes up the least
-/// room is refined until the motion found is the motion assumed. Where another motion fits nearly
-/// as well (a road with few things beside it), nothing is called `tracking` until more scans told.
+/// One scan alone tells no motion, and is bent by it. Two scans laid over each other mostly tell
+/// (tracker_search.cpp): the motion under which what stands takes up the least room is refined
+/// until the motion found is the motion assumed. Where another motion fits nearly as well (a road
+/// with few things beside it), nothing is called `tracking` until more scans told.
 namespace lilo::standard {
 namespace {
 
-constexpr double kStanding_mps = 0.5;  // a robot that is switched on mostly stands
-constexpr double kMoving_mps = 1.0;
 constexpr double kNearer_mps = 0.25;                    // to the motion tracked so far
 constexpr double kApart_mps = 0.5, kApart_radps = 0.1;  // not what was tracked
-constexpr double kOther_mps = 3.0, kOther_radps = 0.5;  // motions nearer to each other are the same
-constexpr double kClearly = 2.0, kProbably = 1.0;       // sigmas
-
-bool differ(const Twist& a, const Twist& b, double mps, double radps) {
-  return (a.linear_mps - b.linear_mps).norm() > mps ||
-         (a.angular_radps - b.angular_radps).norm() > radps;
-}
+constexpr double kProbably = 1.0;                       // sigmas
 
 }  // namespace
 
@@ -150,100 +137,6 @@ void Tracker::note_track(Seen& seen, const Pose& T_begin, const Pose& T_end) {
   seen.T_end = T_end;
 }
 
-/// How compact all remembered scans are as they were tracked.
-int Tracker::cells_as_tracked() {
-  footprint_.clear();
-  for (std::size_t k = 0; k < seen_count_; ++k) {
-    footprint_.add(seen_[k].outline, seen_[k].T_begin, seen_[k].T_end);
-  }
-  return footprint_.cells();
-}
-
-/// How compact they are when the sensor moved so since the first one began.
-Tracker::Look Tracker::look(const Twist& twist) {
-  footprint_.clear();
-  for (std::size_t k = 0; k < seen_count_; ++k) {
-    const Seen& one = seen_[k];
-    const double end_s = 1e-9 * static_cast<double>(one.timing.end_ns - seen_[0].timing.end_ns);
-    const double span_s = one.timing.motion_compensated ? 0.0 : span_of(one.timing);
-    footprint_.add(one.outline, moved({}, twist, end_s - span_s), moved({}, twist, end_s));
-  }
-  return {twist, footprint_.cells()};
-}
-
-Tracker::Look Tracker::look_around(const Twist& about) {
-  constexpr double kTurn = 0.2;  // rad/s for each m/s: far things feel both alike
-  Look best = look(about);
-  for (const double step : {0.5, 0.25, 0.125}) {
-    const Twist middle = best.twist;
-    for (int turn = -1; turn <= 1; ++turn) {
-      for (int x = -2; x <= 2; ++x) {
-        for (int y = -2; y <= 2; ++y) {
-          Twist beside = middle;
-          beside.linear_mps += step * Eigen::Vector3d(x, y, 0.0);
-          beside.angular_radps.z() += kTurn * step * turn;
-          const Look other = look(beside);
-          if (other.cells < best.cells) best = other;
-        }
-      }
-    }
-  }
-  return best;
-}
-
-/// Whether what was seen speaks for the motion with `cells` and against the other.
-bool Tracker::is_less(int cells, int other_cells, double sigmas) const {
-  const int met = meetings(cells_alone_, cells, other_cells);
-  return other_cells - cells > sigmas * std::sqrt(static_cast<double>(met));
-}
-
-/// All motions along the ground that vehicles have: the faster, the less they turn.
-void Tracker::look_everywhere() {
-  constexpr double kStep_mps = 1.0, kStep_radps = 0.2, kMost_mps2 = 4.0;
-  constexpr int kSpeeds = 40, kHeadings = 16, kTurns = 10;
-  looks_.clear();
-  looks_.push_back(look({}));
-  for (int turn = -kTurns; turn <= kTurns; ++turn) {
-    Twist twist;
-    twist.angular_radps.z() = kStep_radps * turn;
-    if (turn != 0) looks_.push_back(look(twist));
-    for (int speed = 1; speed <= kSpeeds; ++speed) {
-      const double speed_mps = kStep_mps * speed;
-      if (speed_mps * std::abs(twist.angular_radps.z()) > kMost_mps2) break;
-      for (int heading = 0; heading < kHeadings; ++heading) {
-        const double heading_rad = 2.0 * std::numbers::pi * heading / kHeadings;
-        twist.linear_mps = {speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad),
-                            0.0};
-        looks_.push_back(look(twist));
-      }
-    }
-  }
-}
-
-/// The motion under which the remembered scans fall on each other best. Standing, unless another is
-/// clearly better.
-Tracker::Start Tracker::most_compact() {
-  Start start;
-  start.is_clear = true;
-  start.doubt_mps = kStanding_mps;
-  const Look standing = look({});
-  const int least = cells_alone_ / static_cast<int>(seen_count_);  // all scans in the same cells
-  if (!is_less(least, standing.cells, kClearly)) return start;
-  look_everywhere();
-  const Look best = *std::min_element(
-      looks_.begin(), looks_.end(), [](const Look& a, const Look& b) { return a.cells < b.cells; });
-  start.is_clear = std::none_of(looks_.begin(), looks_.end(), [&](const Look& other) {
-    return differ(other.twist, best.twist, kOther_mps, kOther_radps) &&
-           !is_less(best.cells, other.cells, kClearly);
-  });
-  if (!is_less(best.cells, standing.cells, kClearly)) return start;
-  start.moves = true;
-  start.twist = look_around(best.twist).twist;
-  start.believed_mps = start.twist.linear_mps;
-  start.doubt_mps = kMoving_mps;
-  return start;
-}
-
 /// Takes all scans but the newest through a start, as though it had been known.
 void Tracker::rehearse(Start start) {
   Solution solution = refine(start);
@@ -301,7 +194,7 @@ void Tracker::decide() {
   const Twist tracked = twist_so_far();
   const Start other = best_start(tracked);
   if (differ(other.twist, tracked, kApart_mps, kApart_radps) &&
-      is_less(look(other.twist).cells, cells_as_tracked(), kProbably)) {
+      speaks_for(look(other.twist).cells, cells_as_tracked(), kProbably)) {
     rehearse(other);
   }
   if (seen_count_ == kScansToDecide) seen_count_ = 0;

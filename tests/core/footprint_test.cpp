@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace lilo::standard {
@@ -41,13 +42,15 @@ std::vector<std::vector<Feature>> two_scans(const Twist& twist) {
   return scans;
 }
 
-int cells_under(const std::vector<std::vector<Feature>>& scans, const Twist& supposed) {
+int cells_under(const std::vector<std::vector<Feature>>& scans, const Twist& supposed,
+                Share share = Share::all) {
   Footprint footprint(100000);
   Outline outline;
   for (std::size_t k = 0; k < scans.size(); ++k) {
     const double begin_s = kSpan_s * static_cast<double>(k);
     outline.assign(scans[k]);
-    footprint.add(outline, moved({}, supposed, begin_s), moved({}, supposed, begin_s + kSpan_s));
+    footprint.add(outline, moved({}, supposed, begin_s), moved({}, supposed, begin_s + kSpan_s),
+                  share);
   }
   return footprint.cells();
 }
@@ -61,13 +64,33 @@ Twist ahead(double speed_mps) {
 TEST(Footprint, IsLeastUnderTheTrueSpeed) {
   for (const double true_mps : {0.0, 10.0, 25.0}) {
     const auto scans = two_scans(ahead(true_mps));
-    const int at_truth = cells_under(scans, ahead(true_mps));
-    for (const double other_mps : {-10.0, 0.0, 10.0, 25.0, 35.0}) {
-      if (other_mps == true_mps) continue;
-      EXPECT_LT(at_truth, cells_under(scans, ahead(other_mps)))
-          << true_mps << " m/s driven, " << other_mps << " m/s supposed";
+    for (const Share share : {Share::all, Share::quarter}) {
+      const int at_truth = cells_under(scans, ahead(true_mps), share);
+      for (const double other_mps : {-10.0, 0.0, 10.0, 25.0, 35.0}) {
+        if (other_mps == true_mps) continue;
+        EXPECT_LT(at_truth, cells_under(scans, ahead(other_mps), share))
+            << true_mps << " m/s driven, " << other_mps << " m/s supposed";
+      }
     }
   }
+}
+
+TEST(Outline, BeginsWithEveryFourth) {
+  std::vector<Feature> features(20);
+  std::vector<float> all_m;
+  for (std::size_t k = 0; k < features.size(); ++k) {
+    features[k].x_m = static_cast<float>(k);
+    features[k].kind = k % 2 == 0 ? Kind::structure : Kind::ground;
+    if (k % 2 == 0) all_m.push_back(features[k].x_m);
+  }
+  Outline outline;
+  outline.assign(features);
+  const std::size_t first = Outline::before(1, outline.x_m.size());
+  const std::vector<float> quarter_m(outline.x_m.begin(),
+                                     outline.x_m.begin() + static_cast<std::ptrdiff_t>(first));
+  EXPECT_EQ(quarter_m, (std::vector<float>{0.0F, 8.0F, 16.0F}));
+  EXPECT_TRUE(
+      std::is_permutation(outline.x_m.begin(), outline.x_m.end(), all_m.begin(), all_m.end()));
 }
 
 TEST(Footprint, OfTheSameScanTwiceIsThatOfOne) {
