@@ -44,7 +44,7 @@ MotionCheck::Looks MotionCheck::look(const Eigen::Vector2d& axis, Share share) {
 }
 
 bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
-  // What is clearly better with all of the scans is better with a quarter of them.
+  // What is clearly better with all of the scans is, but for chance, better with a quarter too.
   const Looks first = look(axis, Share::quarter);
   if (first.least >= first.tracked) return false;
   const auto [tracked, least] = look(axis, Share::all);
