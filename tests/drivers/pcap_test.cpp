@@ -64,8 +64,9 @@ class LinkLayer : public testing::TestWithParam<LinkCase> {};
 
 TEST_P(LinkLayer, PayloadIsFound) {
   const LinkCase& c = GetParam();
-  const std::string path =
-      write_file("link.pcap", pcap_bytes({{c.frame, kTime}}, {.link_type = c.link_type}));
+  // A file of its own: the cases run beside each other.
+  const std::string path = write_file("link_" + c.name + ".pcap",
+                                      pcap_bytes({{c.frame, kTime}}, {.link_type = c.link_type}));
   const Read out = read_all(path);
   ASSERT_EQ(out.payloads.size(), 1U);
   EXPECT_EQ(out.payloads[0], kPayload);
