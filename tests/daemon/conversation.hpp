@@ -41,8 +41,8 @@ inline json ask(UdpSocket& client, const Lilod& lilod, const std::string& reques
   return next_of_kind(client, kind).value_or(json());
 }
 
-/// A VLP-16 in a round room, three times as fast as life; slower than life where a sanitizer makes
-/// a scan take longer than a turn. Its clock goes on from turn to turn.
+/// A VLP-16 in a round room, three times as fast as life, or slower than life under a sanitizer.
+/// Its clock goes on from turn to turn.
 class Sensor {
  public:
   void turn(const Lilod& lilod, double turns) {
@@ -51,7 +51,7 @@ class Sensor {
       source_.read(packet, milliseconds(0));
       const auto* bytes = reinterpret_cast<const char*>(packet.payload.data());
       socket_.send_to(lilod.data_port(), std::string(bytes, packet.payload.size()));
-      std::this_thread::sleep_for(std::chrono::microseconds(LILO_SANITIZED ? 3000 : 400));
+      std::this_thread::sleep_for(std::chrono::microseconds(kSanitized ? 3000 : 400));
     }
   }
   void be_in_a_room_of(unsigned radius_m) { source_.be_in_a_room_of(radius_m); }

@@ -81,8 +81,7 @@ TEST_P(EndToEnd, PosesAreThoseOfTheFile) {
   Lilod lilod("realtime:\n  ring_slots: 64\n", {}, "calibration_file: \"" + calibration_ + '"');
   ASSERT_TRUE(lilod.wait_ready());
   const std::string lilo = LILO_BIN_DIR "/lilo";
-  // No sanitized daemon is as fast as a sensor.
-  ChildProcess replay({lilo, "replay", slice.path(), "--speed", LILO_SANITIZED ? "0.2" : "1",
+  ChildProcess replay({lilo, "replay", slice.path(), "--speed", kUnderTsan ? "0.2" : "1",
                        "--data-port", std::to_string(lilod.data_port()), "--position-port",
                        std::to_string(lilod.position_port())});
   const json schema = protocol_schema();

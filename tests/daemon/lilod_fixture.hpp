@@ -10,6 +10,19 @@
 
 namespace lilo {
 
+/// ThreadSanitizer makes a scan take longer than a turn of the sensor, and has memory of its own.
+#ifdef __SANITIZE_THREAD__
+constexpr bool kUnderTsan = true;
+#else
+constexpr bool kUnderTsan = false;
+#endif
+/// With AddressSanitizer it takes longer than a third of a turn.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = kUnderTsan;
+#endif
+
 /// A running lilod on free loopback ports, with the test as its sink and as its systemd.
 class Lilod {
  public:
