@@ -20,6 +20,7 @@ constexpr std::size_t kSweepShare = 64;
 // Of a tag, from the lowest: x, y, and how high the cell lies.
 constexpr int kAcrossBits = 11, kLevelBits = 10;
 constexpr std::uint32_t kTagAbove = 1U << (2 * kAcrossBits);
+// Of the table: how many cells lie side by side.
 constexpr int kBlockBits = 2;
 constexpr std::size_t kLevelSlots = 1U << (2 * kBlockBits);
 
@@ -105,25 +106,22 @@ std::int32_t CellMap::cell_at(const Place& place) const {
     if (cells_[static_cast<std::size_t>(place.last)].index == place.index) return place.last;
     slot = slot_of(place.index);
   }
-  const std::int32_t at = cell_from(slot, tag_of(place.index));
+  const std::int32_t at = slots_[slot_from(slot, tag_of(place.index))].at;
   if (at != kNone) __builtin_prefetch(&cells_[static_cast<std::size_t>(at)]);
   return at;
 }
 
-std::int32_t CellMap::cell_from(std::size_t slot, std::uint32_t tag) const {
-  for (;; slot = (slot + 1) & mask_) {
-    const Slot& here = slots_[slot];
-    if (here.at == kNone || here.tag == tag) return here.at;
-  }
+std::size_t CellMap::slot_from(std::size_t slot, std::uint32_t tag) const {
+  while (slots_[slot].at != kNone && slots_[slot].tag != tag) slot = (slot + 1) & mask_;
+  return slot;
 }
 
 std::int32_t CellMap::open(const Place& place) {
   const std::uint32_t tag = tag_of(place.index);
-  std::size_t slot = place.slot;
-  for (; slots_[slot].at >= 0; slot = (slot + 1) & mask_) {
-    if (slots_[slot].tag != tag) continue;
-    __builtin_prefetch(&sums_[static_cast<std::size_t>(slots_[slot].at)], 1);
-    return slots_[slot].at;
+  Slot& slot = slots_[slot_from(place.slot, tag)];
+  if (slot.at != kNone) {
+    __builtin_prefetch(&sums_[static_cast<std::size_t>(slot.at)], 1);
+    return slot.at;
   }
   if (used_ == config_.capacity) {
     ++refused_;
@@ -139,7 +137,7 @@ std::int32_t CellMap::open(const Place& place) {
     cells_[static_cast<std::size_t>(at)] = Cell{};
     sums_[static_cast<std::size_t>(at)] = Sums{};
   }
-  slots_[slot] = {at, tag};
+  slot = {at, tag};
   ++used_;
   cells_[static_cast<std::size_t>(at)].index = place.index;
   cells_[static_cast<std::size_t>(at)].born = keyframe_;
@@ -192,7 +190,7 @@ std::size_t CellMap::neighbours_of(const Index& i, Neighbours& found) const {
   };
   std::size_t count = 0;
   for (n = 0; n < slots.size(); ++n) {
-    const std::int32_t at = cell_from(slots[n], tags[n]);
+    const std::int32_t at = slots_[slot_from(slots[n], tags[n])].at;
     if (at == kNone) continue;
     __builtin_prefetch(&sums_[static_cast<std::size_t>(at)]);
     found[count++] = {at, cells_m(n / 9), cells_m(n / 3 % 3), cells_m(n % 3)};

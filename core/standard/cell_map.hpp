@@ -132,8 +132,8 @@ class CellMap {
   [[nodiscard]] static std::uint32_t tag_of(const Index& i);
   /// From one cell to another, the short way round the tags' window.
   [[nodiscard]] static Index between(std::uint32_t from_tag, std::uint32_t to_tag);
-  /// The cell with this tag, its own slot or where it came from there.
-  [[nodiscard]] std::int32_t cell_from(std::size_t slot, std::uint32_t tag) const;
+  /// From a cell's own slot on, that which holds it, or else the first empty one.
+  [[nodiscard]] std::size_t slot_from(std::size_t slot, std::uint32_t tag) const;
   /// Of the 27 cells around and including one, those that are there; how many.
   std::size_t neighbours_of(const Index& i, Neighbours& found) const;
   [[nodiscard]] Sums sums_around(const Index& i) const;
