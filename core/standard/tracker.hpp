@@ -108,8 +108,9 @@ class Tracker {
   [[nodiscard]] int cells_as_tracked();
   Look look(const Twist& twist, Share share = Share::all);
   Look look_around(const Twist& about);
+  [[nodiscard]] int cells_alone(Share share);
   /// Whether what was seen speaks for the motion with `cells` and against the other.
-  [[nodiscard]] bool speaks_for(int cells, int other_cells, double sigmas) const;
+  static bool speaks_for(int cells_alone, int cells, int other_cells, double sigmas);
   void look_everywhere();
   void look_closer();
   [[nodiscard]] Look least_look() const;
@@ -141,7 +142,6 @@ class Tracker {
   TrackingStatus status_ = TrackingStatus::initializing;
   std::array<Seen, kScansToDecide> seen_;  // the first scans, until the motion is known
   std::size_t seen_count_ = 0;
-  int cells_alone_ = 0;  // that the first scans take up, each for itself, all together
   bool start_is_clear_ = false;
   bool stands_ = false;  // when switched on, or so it seemed
   Twist assumed_twist_;  // at the start

@@ -15,12 +15,6 @@ constexpr double kMoving_mps = 1.0;
 constexpr double kOther_mps = 3.0, kOther_radps = 0.5;  // motions nearer to each other are the same
 constexpr double kClearly = 2.0, kBeyondDoubt = 3.0;    // sigmas
 
-/// Whether what was seen speaks for one motion and against the other.
-bool is_less(int cells_alone, int cells, int other_cells, double sigmas) {
-  const int met = meetings(cells_alone, cells, other_cells);
-  return other_cells - cells > sigmas * std::sqrt(static_cast<double>(met));
-}
-
 }  // namespace
 
 bool Tracker::differ(const Twist& a, const Twist& b, double mps, double radps) {
@@ -35,6 +29,17 @@ int Tracker::cells_as_tracked() {
     footprint_.add(seen_[k].outline, seen_[k].T_begin, seen_[k].T_end);
   }
   return footprint_.cells();
+}
+
+/// What they take up each for itself, all together.
+int Tracker::cells_alone(Share share) {
+  int alone = 0;
+  for (std::size_t k = 0; k < seen_count_; ++k) {
+    footprint_.clear();
+    footprint_.add(seen_[k].outline, {}, {}, share);
+    alone += footprint_.cells();
+  }
+  return alone;
 }
 
 /// How compact they are when the sensor moved so since the first one began.
@@ -69,8 +74,9 @@ Tracker::Look Tracker::look_around(const Twist& about) {
   return best;
 }
 
-bool Tracker::speaks_for(int cells, int other_cells, double sigmas) const {
-  return is_less(cells_alone_, cells, other_cells, sigmas);
+bool Tracker::speaks_for(int cells_alone, int cells, int other_cells, double sigmas) {
+  const int met = meetings(cells_alone, cells, other_cells);
+  return other_cells - cells > sigmas * std::sqrt(static_cast<double>(met));
 }
 
 /// A quarter of what was seen, under all motions along the ground that vehicles have: the faster,
@@ -104,15 +110,10 @@ Tracker::Look Tracker::least_look() const {
 
 /// Leaves those motions that the quarter does not speak against, and looks at all of it under them.
 void Tracker::look_closer() {
-  int alone = 0;
-  for (std::size_t k = 0; k < seen_count_; ++k) {
-    footprint_.clear();
-    footprint_.add(seen_[k].outline, {}, {}, Share::quarter);
-    alone += footprint_.cells();
-  }
-  const int least = least_look().cells;
-  std::erase_if(
-      looks_, [&](const Look& other) { return is_less(alone, least, other.cells, kBeyondDoubt); });
+  const int alone = cells_alone(Share::quarter), least = least_look().cells;
+  std::erase_if(looks_, [&](const Look& other) {
+    return speaks_for(alone, least, other.cells, kBeyondDoubt);
+  });
   for (Look& one : looks_) one = look(one.twist);
 }
 
@@ -123,16 +124,17 @@ Tracker::Start Tracker::most_compact() {
   start.is_clear = true;
   start.doubt_mps = kStanding_mps;
   const Look standing = look({});
-  const int least = cells_alone_ / static_cast<int>(seen_count_);  // all scans in the same cells
-  if (!speaks_for(least, standing.cells, kClearly)) return start;
+  const int alone = cells_alone(Share::all);
+  const int least = alone / static_cast<int>(seen_count_);  // all scans in the same cells
+  if (!speaks_for(alone, least, standing.cells, kClearly)) return start;
   look_everywhere();
   look_closer();
   const Look best = least_look();
   start.is_clear = std::none_of(looks_.begin(), looks_.end(), [&](const Look& other) {
     return differ(other.twist, best.twist, kOther_mps, kOther_radps) &&
-           !speaks_for(best.cells, other.cells, kClearly);
+           !speaks_for(alone, best.cells, other.cells, kClearly);
   });
-  if (!speaks_for(best.cells, standing.cells, kClearly)) return start;
+  if (!speaks_for(alone, best.cells, standing.cells, kClearly)) return start;
   start.moves = true;
   start.twist = look_around(best.twist).twist;
   start.believed_mps = start.twist.linear_mps;

@@ -29,9 +29,6 @@ void Tracker::remember(const std::vector<Feature>& all, const std::vector<Featur
   seen.chosen.assign(chosen.begin(), chosen.end());
   seen.outline.assign(chosen);
   note_prediction(seen);
-  footprint_.clear();
-  footprint_.add(seen.outline, {}, {});
-  cells_alone_ = footprint_.cells() + (seen_count_ == 1 ? 0 : cells_alone_);
   if (seen_count_ <= 2) return;
   if (stands_) {
     doubt_standing();
@@ -194,7 +191,7 @@ void Tracker::decide() {
   const Twist tracked = twist_so_far();
   const Start other = best_start(tracked);
   if (differ(other.twist, tracked, kApart_mps, kApart_radps) &&
-      speaks_for(look(other.twist).cells, cells_as_tracked(), kProbably)) {
+      speaks_for(cells_alone(Share::all), look(other.twist).cells, cells_as_tracked(), kProbably)) {
     rehearse(other);
   }
   if (seen_count_ == kScansToDecide) seen_count_ = 0;
