@@ -153,7 +153,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   constexpr std::size_t kCoarseStride = 4;
   constexpr double kNear_rad = 3e-3, kNear_m = 0.03;
   constexpr double kEnough_rad = 3e-4, kEnough_m = 3e-3;
-  // Weights and cells follow each step, so that the next would be a fifth to a quarter of it.
+  // Weights and cells follow each step, so that the next would be about a quarter of it.
   constexpr double kFurther = 1.2;
   std::size_t stride = kCoarseStride;
   Solution solution;
