@@ -149,7 +149,7 @@ void Publisher::tick() {
   monitor_.collect(counts(), health_);
   if (config_.health.publish) broadcast(write_health_now());
   write_prometheus(message_.session, health_, metrics_);
-  if (!metrics_file_.write(metrics_)) monitor_.metrics_failed();
+  if (!metrics_writer_.write(metrics_file_, metrics_)) monitor_.metrics_failed();
 }
 
 }  // namespace lilo

@@ -3,7 +3,7 @@
 #include "config/config.hpp"
 #include "daemon/engine.hpp"
 #include "daemon/health_monitor.hpp"
-#include "daemon/metrics_file.hpp"
+#include "daemon/metrics_writer.hpp"
 #include "daemon/pose_message.hpp"
 #include "daemon/pose_record.hpp"
 #include "daemon/saver.hpp"
@@ -66,6 +66,7 @@ class Publisher {
   Health health_;
   ReplacedFile metrics_file_;
   std::string metrics_;
+  MetricsWriter metrics_writer_;
   std::uint64_t poses_sent_ = 0, poses_not_sent_ = 0;
   Sinks sinks_;
   Server server_;

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "daemon/metrics_file.hpp"
+#include "daemon/wakeup.hpp"
+
+#include <atomic>
+#include <string>
+#include <string_view>
+#include <thread>
+
+namespace lilo {
+
+/// Replaces a file with every text it is given, on a thread of its own and of normal policy: a busy
+/// disk delays no pose. One thread calls; it never waits, and once warm it does not allocate.
+class MetricsWriter {
+ public:
+  /// Throws std::system_error when the system has no file descriptor left.
+  MetricsWriter() = default;
+  /// Waits until what it was given is written.
+  ~MetricsWriter();
+  MetricsWriter(const MetricsWriter&) = delete;
+  MetricsWriter& operator=(const MetricsWriter&) = delete;
+
+  /// While the text before is still being written, this one is left out. False when the last one
+  /// could not be written. The first call starts the thread, so that it comes after the process has
+  /// its memory locked and its stacks limited, and throws std::system_error when there is none.
+  bool write(const ReplacedFile& file, std::string_view text);
+
+ private:
+  void run();
+
+  Wakeup given_{Wakeup::Mode::blocking};
+  std::atomic<bool> stop_{false};
+  /// Whose the three below are: the thread's while it is set, else the caller's.
+  std::atomic<bool> writing_{false};
+  ReplacedFile file_{""};
+  std::string text_;
+  bool written_ = true;
+  std::thread thread_;
+};
+
+}  // namespace lilo
