@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <unistd.h>
@@ -165,6 +166,30 @@ TEST(SensorPath, StandsStillUntilItSetsOffAndTurnsAsFastAsAsked) {
   EXPECT_LT((first.rotation - later.rotation).norm(), 1e-9);
   const Eigen::Matrix3d turn = path.at(4.0).rotation.transpose() * path.at(4.5).rotation;
   EXPECT_NEAR(std::acos(0.5 * (turn.trace() - 1.0)) * 180.0 / 3.14159265358979, 45.0, 0.5);
+}
+
+TEST(SensorPath, ShakesAsAskedWhileItDrives) {
+  const Route route({{300.0, 0.0, 0.0}}, 60.0);
+  const Terrain terrain({-100, -100, 300, 100}, 0.5, [](double, double) -> Terrain::Sample {
+    return {0.0, Material::soil};
+  });
+  const MotionOptions motion{.duration_s = 20.0, .shake_hz = 12.0, .shake_dps = 2.0};
+  const Drive drive(motion, {}, route);
+  const SensorPath path(motion, {.wander_m = 0.0}, route, drive, terrain);
+  const double h = 1e-3;
+  const auto rate_radps = [&](double t_s) -> Vec3 {
+    const Eigen::Matrix3d turn = path.at(t_s - h).rotation.transpose() * path.at(t_s + h).rotation;
+    return Vec3(turn(2, 1), turn(0, 2), turn(1, 0)) / (2.0 * h);
+  };
+  EXPECT_LT(rate_radps(0.3).norm(), 1e-6);
+  Vec3 squares = Vec3::Zero();
+  constexpr int kSteps = 5000;
+  // From where it neither speeds up nor brakes.
+  for (int k = 0; k < kSteps; ++k) squares += rate_radps(10.0 + 1e-3 * k).cwiseAbs2() / kSteps;
+  const Vec3 rms_dps = squares.cwiseSqrt() * 180.0 / std::numbers::pi;
+  EXPECT_NEAR(rms_dps.x(), 2.0, 0.1);
+  EXPECT_NEAR(rms_dps.y(), 2.0, 0.1);
+  EXPECT_LT(rms_dps.z(), 0.1);
 }
 
 }  // namespace

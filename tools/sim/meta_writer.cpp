@@ -56,6 +56,8 @@ void write_meta(const std::string& folder, const SimOptions& options, const SimS
   meta["two_point"] = options.sensor.two_point;
   meta["hdl_azimuth"] = options.sensor.turning_block ? "firing" : "block";
   meta["tilt_deg"] = options.motion.tilt_deg;
+  meta["shake_hz"] = options.motion.shake_hz;
+  meta["shake_dps"] = options.motion.shake_dps;
   meta["gps"] = options.sensor.gps;
   meta["movers"] = scene.mover_count();
   meta["triangles"] = scene.triangle_count();

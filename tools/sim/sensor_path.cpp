@@ -74,6 +74,41 @@ class Suspension {
   Attitude body_, rate_;
 };
 
+/// Added to pitch and roll of the body, as control points of the path's spline.
+class Shake {
+ public:
+  explicit Shake(const MotionOptions& options) : Shake(options, Random(options.seed, 41)) {}
+  void add_to(Attitude& body, double time_s, double speed_mps) const {
+    constexpr double kFullSpeed_mps = 1.0;
+    const double share = smoothstep(0.0, kFullSpeed_mps, speed_mps);
+    body.pitch += share * pitch_.at(time_s);
+    body.roll += share * roll_.at(time_s);
+  }
+
+ private:
+  struct Wave {
+    Wave(double hz, double rate_dps, double begin_rad)
+        : omega_radps(2.0 * std::numbers::pi * hz), phase_rad(begin_rad) {
+      // A cubic B-spline flattens a wave by the fourth power of sinc.
+      const double half_rad = 0.5 * omega_radps * SensorPath::kKnot_s;
+      const double sinc = sin_cos(half_rad).sin / half_rad;
+      const double rate_radps = rate_dps * std::numbers::pi / 180.0;
+      amplitude_rad = std::numbers::sqrt2 * rate_radps / omega_radps / (sinc * sinc * sinc * sinc);
+    }
+    [[nodiscard]] double at(double time_s) const {
+      return amplitude_rad * sin_cos(omega_radps * time_s + phase_rad).sin;
+    }
+    double omega_radps, phase_rad, amplitude_rad;
+  };
+  static constexpr double kRollSlower = 0.8;
+
+  Shake(const MotionOptions& options, Random random)
+      : pitch_(options.shake_hz, options.shake_dps, random.angle()),
+        roll_(kRollSlower * options.shake_hz, options.shake_dps, random.angle()) {}
+
+  Wave pitch_, roll_;
+};
+
 }  // namespace
 
 SensorPath::SensorPath(const MotionOptions& options, const Vehicle& vehicle, const Route& route,
@@ -84,6 +119,7 @@ SensorPath::SensorPath(const MotionOptions& options, const Vehicle& vehicle, con
   const double dt = kKnot_s / kSubsteps;
   const int knots = static_cast<int>(std::ceil((options.duration_s + 1.6) / kKnot_s));
   Suspension suspension;
+  const Shake shake(options);
   for (int k = 0; k < knots; ++k) {
     Channels channels{};
     for (int sub = 0; sub < kSubsteps; ++sub) {
@@ -95,8 +131,9 @@ SensorPath::SensorPath(const MotionOptions& options, const Vehicle& vehicle, con
       ground.pitch -= 0.008 * ahead;  // squats when it accelerates, dives when it brakes
       ground.roll += 0.010 * speed * speed * route.at(arc).curvature;  // leans out of the curve
       if (k == 0 && sub == 0) suspension.settle(ground);
-      const Attitude body = suspension.step(ground, dt);
+      Attitude body = suspension.step(ground, dt);
       if (sub != 0) continue;
+      shake.add_to(body, time, speed);
       const SinCos yaw = sin_cos(stance.yaw), pitch = sin_cos(body.pitch),
                    roll = sin_cos(body.roll);
       const double h = vehicle.sensor_height_m;

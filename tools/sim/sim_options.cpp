@@ -68,6 +68,9 @@ void add_motion(CLI::App& command, SimOptions& options) {
   group.number("--turn-rate-dps", motion.turn_rate_dps, -400.0, 400.0,
                "Turns as well; with --speed-mps 0 on the spot");
   group.number("--tilt-deg", motion.tilt_deg, -45.0, 45.0, "Sensor mounted nose down");
+  group.number("--shake-dps", motion.shake_dps, 0.0, 90.0,
+               "Rate, rms, at which wheels or mast shake it while it drives");
+  group.number("--shake-hz", motion.shake_hz, 0.5, 20.0, "How often")->capture_default_str();
   command.add_option("--sensor-height-m", options.sensor_height_m, "Default: the world's")
       ->check(CLI::Range(0.2, 5.0).description(""))
       ->type_name("0.2..5")
