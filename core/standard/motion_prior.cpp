@@ -87,6 +87,13 @@ UnrestPull pull_of_unrest(const Prior& prior, int segments, const Unknowns& x) {
   return pull;
 }
 
+Vector6d wildest_begin(Prior prior, int segments, const Unknowns& x, NormalMatrix H, Unknowns b) {
+  prior.acceleration_density = prior.acceleration_density.cwiseMax(prior.wildest_density);
+  add_prior(prior, segments, x, H, b);
+  const Unknowns step = H.ldlt().solve(b);
+  return x.head<6>() + step.head<6>();
+}
+
 KnotInformation process_information(const Vector6d& acceleration_density, double dt_s) {
   const Vector6d w = acceleration_density.cwiseInverse();
   KnotInformation W = KnotInformation::Zero();

@@ -21,6 +21,7 @@ struct Prior {
   KnotInformation begin_information = KnotInformation::Identity();
   /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
   Vector6d acceleration_density = Vector6d::Ones();
+  Vector6d wildest_density = Vector6d::Ones();  ///< the most that may be learnt
 };
 
 /// The kinds of unrest that differ from vehicle to vehicle and road to road: rocking (roll and
@@ -47,6 +48,10 @@ Prior loosened(Prior prior, const PerUnrest& surprise);
 /// the more of it is believed in, the weaker the pull to a constant velocity. Solved by the normal
 /// matrix it says where the solution would go.
 UnrestPull pull_of_unrest(const Prior& prior, int segments, const Unknowns& x);
+
+/// Where the scan would begin if the wildest motion were believed in: by the prior, at the
+/// deviation `x`, and the normal equations H step = b of its data alone.
+Vector6d wildest_begin(Prior prior, int segments, const Unknowns& x, NormalMatrix H, Unknowns b);
 
 /// Information of the change between two knots `dt_s` apart under white noise on acceleration:
 /// inverse of Q = [dt^3/3 Qc, dt^2/2 Qc; dt^2/2 Qc, dt Qc].

@@ -183,7 +183,9 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     }
     solution.surprise = surprise_of(prior, config_.segments, solution.trajectory.knots);
     const Prior believed = loosened(prior, solution.surprise);
-    add_prior(believed, config_.segments, solution.trajectory.knots, H, b);
+    const NormalMatrix data_H = H;
+    const Unknowns data_b = b, x = solution.trajectory.knots;
+    add_prior(believed, config_.segments, x, H, b);
     const Eigen::LDLT<NormalMatrix> factors(H);
     const Unknowns step = factors.solve(b);
     if (!step.allFinite()) break;
@@ -200,6 +202,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
       const UnrestPull by_unrest =
           factors.solve(pull_of_unrest(believed, config_.segments, solution.trajectory.knots));
       solution.end_by_unrest = by_unrest.middleRows<6>(n - kKnotSize);
+      solution.wildest_begin = wildest_begin(believed, config_.segments, x, data_H, data_b);
     }
   }
   const KnotInformation unrest = process_information(prior.acceleration_density, prior.span_s);

@@ -44,6 +44,7 @@ struct Solution {
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
   PerUnrest surprise = PerUnrest::Zero();                     ///< what the prior had not expected
   EndByUnrest end_by_unrest = EndByUnrest::Zero();            ///< d end / d log density
+  Vector6d wildest_begin = Vector6d::Zero();                  ///< see motion_prior.hpp
   /// Of the pose, from the scan alone, as though its residuals were independent.
   Matrix6d data_information = Matrix6d::Zero();
   /// Of the pose, from a motion known exactly until the scan began.

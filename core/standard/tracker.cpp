@@ -145,6 +145,7 @@ Prior Tracker::predict(const Timing& scan) const {
   prior.T_begin = moved(T_odom_sensor_, twist_, gap_s);
   prior.twist = twist_;
   prior.acceleration_density = unrest_.density();
+  prior.wildest_density = unrest_.wildest_density();
   prior.begin_information = propagated(information_, prior.acceleration_density, gap_s);
   return prior;
 }
@@ -173,7 +174,7 @@ void Tracker::learn_unrest(TrackingStatus last_status, const EndByUnrest& last_e
   // A scan whose returns all belong to its end knows nothing of its beginning.
   if (timing_.motion_compensated || !follows(timing_, last_end_ns_)) return;
   if (!is_good(last_status) || !is_good(status_)) return;
-  unrest_.learn(solution_.trajectory.knots.head<6>(), last_end_by_unrest, solution_.surprise);
+  unrest_.learn(solution_.wildest_begin, last_end_by_unrest, solution_.surprise);
 }
 
 void Tracker::accept(const Timing& scan, const Prior& prior, const Solution& solution) {

@@ -4,15 +4,19 @@
 #include <cmath>
 
 namespace lilo::standard {
+namespace {
+
+// Of the logarithm of the ratio to the usual density: 55 times that, or a seventh. Calmer changes
+// little while it lasts, but holds the first jolt down so far that it is no surprise.
+constexpr double kMost = 4.0, kLeast = -2.0;
+
+}  // namespace
 
 void Unrest::learn(const Vector6d& correction, const EndByUnrest& end_by_unrest,
                    const PerUnrest& surprise) {
   // Steps half and twice as long give nearly the same errors.
   constexpr double kStep = 0.4;     // when both go the same way
   constexpr double kNewest = 0.05;  // of an average over two seconds
-  // 55 times the usual density, or a seventh. Calmer than that changes little while it lasts, but
-  // holds the first jolt down so far that it is no surprise.
-  constexpr double kMost = 4.0, kLeast = -2.0;
   const EndByUnrest by = unrest_axes().cwiseProduct(end_by_unrest);
   const PerUnrest product = by.transpose() * correction;
   const PerUnrest correction2 = unrest_axes().transpose() * correction.cwiseAbs2();
@@ -31,6 +35,10 @@ void Unrest::learn(const Vector6d& correction, const EndByUnrest& end_by_unrest,
 
 Vector6d Unrest::density() const {
   return usual_.array() * (unrest_axes() * log_ratio_).array().exp();
+}
+
+Vector6d Unrest::wildest_density() const {
+  return usual_.array() * (unrest_axes() * PerUnrest::Constant(kMost)).array().exp();
 }
 
 }  // namespace lilo::standard

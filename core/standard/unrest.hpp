@@ -12,7 +12,9 @@ namespace lilo::standard {
 /// A scan sees its end from one side only. The next one begins there and corrects it. When the
 /// correction goes where the end would have gone had more unrest been believed in, there is more:
 /// a step down the slope of the squared correction, which asks nothing of the noise or of the
-/// spectrum of the motion. Calm is believed slowly and never far, a surprise at once: a robot that
+/// spectrum of the motion. What the next scan says is asked with the wildest motion believed in: of
+/// wheels that hop once a turn, calm takes from its beginning what it took from the end before, and
+/// the two agree. Calm is believed slowly and never far, a surprise at once: a robot that
 /// stood for a minute sets off on cobbles. What the driver does, yaw and speed, is left as
 /// configured: learning it the same way made headings and country roads worse.
 class Unrest {
@@ -20,14 +22,16 @@ class Unrest {
   /// `usual`: densities of all axes, kept but for those of the unrest, where learning begins.
   explicit Unrest(const Vector6d& usual) : usual_(usual) {}
 
-  /// `correction`: by how much a scan moves the end of the one before; `end_by_unrest`: by how much
-  /// that end goes with the logarithm of each density. Both rotation, translation (rad, m).
-  /// `surprise`: the scan's own.
+  /// `correction`: by how much a scan moves the end of the one before, seen so; `end_by_unrest`: by
+  /// how much that end goes with the logarithm of each density. Both rotation, translation (rad,
+  /// m). `surprise`: the scan's own.
   void learn(const Vector6d& correction, const EndByUnrest& end_by_unrest,
              const PerUnrest& surprise);
 
   /// Rotation (rad^2/s^3), translation (m^2/s^3).
   [[nodiscard]] Vector6d density() const;
+  /// The most that may be learnt.
+  [[nodiscard]] Vector6d wildest_density() const;
 
  private:
   Vector6d usual_;
