@@ -16,7 +16,7 @@ namespace lilo::standard {
 /// wheels that hop once a turn, calm takes from its beginning what it took from the end before, and
 /// the two agree. Calm is believed slowly and never far, a surprise at once: a robot that
 /// stood for a minute sets off on cobbles. What the driver does, yaw and speed, is left as
-/// configured: learning it the same way made headings and country roads worse.
+/// configured: learning it the same way made nothing better.
 class Unrest {
  public:
   /// `usual`: densities of all axes, kept but for those of the unrest, where learning begins.
