@@ -19,6 +19,7 @@ class ReplacedFile {
   /// An empty path: there is no file.
   explicit ReplacedFile(const std::string& path) : path_(path), draft_(path + ".new") {}
 
+  [[nodiscard]] bool is_none() const { return path_.empty(); }
   /// As replace_file(). True when there is no file.
   [[nodiscard]] bool write(std::string_view text) const;
 

@@ -14,7 +14,7 @@ MetricsWriter::~MetricsWriter() {
 }
 
 bool MetricsWriter::write(const ReplacedFile& file, std::string_view text) {
-  if (writing_.load(std::memory_order_acquire)) return true;
+  if (file.is_none() || writing_.load(std::memory_order_acquire)) return true;
   const bool written = written_;
   if (!thread_.joinable()) text_.reserve(2 * text.size());  // its numbers grow longer
   file_ = file;

@@ -22,8 +22,9 @@ class MetricsWriter {
   MetricsWriter& operator=(const MetricsWriter&) = delete;
 
   /// While the text before is still being written, this one is left out. False when the last one
-  /// could not be written. The first call starts the thread, so that it comes after the process has
-  /// its memory locked and its stacks limited, and throws std::system_error when there is none.
+  /// could not be written. The first call with a file starts the thread, so that it comes after the
+  /// process has its memory locked and its stacks limited, and throws std::system_error when there
+  /// is none.
   bool write(const ReplacedFile& file, std::string_view text);
 
  private:
