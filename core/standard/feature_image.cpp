@@ -32,17 +32,6 @@ float gap_rad(const BeamTable& beams, int ring) {
   return beams.elevation_rad[lower + 1] - beams.elevation_rad[lower];
 }
 
-float columns_per_rad(int columns) {
-  return static_cast<float>(columns) / (2.0F * std::numbers::pi_v<float>);
-}
-
-/// Of an image `columns` wide that begins straight behind and goes clockwise.
-std::uint32_t column_of(float azimuth_rad, std::uint32_t columns, float per_rad) {
-  const auto column = static_cast<std::uint32_t>(
-      static_cast<std::int32_t>((std::numbers::pi_v<float> - azimuth_rad) * per_rad));
-  return column < columns ? column : 0;  // at the seam rounding reaches the last column's end
-}
-
 }  // namespace
 
 FeatureImage::FeatureImage(int columns, RangeLimits limits)
@@ -52,6 +41,10 @@ FeatureImage::FeatureImage(int columns, RangeLimits limits)
 
 int FeatureImage::columns_for(int rings, int most) {
   return std::min(most, kMostPixels / std::max(rings, 1));
+}
+
+float FeatureImage::columns_per_rad(int columns) {
+  return static_cast<float>(columns) / (2.0F * std::numbers::pi_v<float>);
 }
 
 const std::vector<Feature>& FeatureImage::build(const Scan& scan) {
@@ -100,42 +93,6 @@ std::vector<Feature>& FeatureImage::finish(const Scan& scan) {
   for (Feature& f : features_)
     f.s = scan.motion_compensated ? 1.0F : std::clamp(f.s * per_ns, 0.0F, 1.0F);
   return features_;
-}
-
-int FeatureImage::place_of(int column) const {
-  const int place = column - first_column_;
-  return place < 0 ? place + columns_ : place;
-}
-
-void FeatureImage::project(std::span<const Return> returns) {
-  // In registers, whatever is written to the image.
-  const auto rows = static_cast<std::uint32_t>(beams_.ring_count);
-  const auto columns = static_cast<std::uint32_t>(columns_);
-  const float per_rad = columns_per_rad(columns_);
-  const float nearest2 = nearest2_, farthest2 = farthest2_;
-  Pixel* const pixels = pixels_.data();
-  Filled* const filled = filled_.data();
-  for (const Return& r : returns) {
-    const std::uint32_t ring = r.ring;
-    if (ring >= rows) continue;
-    const std::uint32_t column = column_of(r.azimuth_rad, columns, per_rad);
-    const std::uint64_t bit = std::uint64_t{1} << (ring % 64U);
-    std::uint64_t& word = filled[column][ring / 64U];
-    if ((word & bit) != 0) continue;  // most
-    const float range2 = r.x_m * r.x_m + r.y_m * r.y_m + r.z_m * r.z_m;
-    if (!(range2 >= nearest2 && range2 <= farthest2)) continue;  // and NaN
-    word |= bit;
-    pixels[column * rows + ring] = {r.x_m, r.y_m, r.z_m, r.t_ns};
-    note(static_cast<int>(column));
-  }
-}
-
-/// A return fell into an empty pixel of the column.
-void FeatureImage::note(int column) {
-  if (first_column_ < 0) first_column_ = (column + margin_) % columns_;
-  const int place = place_of(column);
-  if (place <= classified_ && classified_ > 0) disturbed_ = true;  // or looked at from beside
-  if (place < columns_ - 2 * margin_ && place > front_) front_ = place;
 }
 
 void FeatureImage::classify_until(int place) {

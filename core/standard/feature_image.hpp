@@ -82,7 +82,10 @@ class FeatureImage {
     std::array<float, kMaxRings + 3> length2_m2;
     std::array<std::int32_t, kMaxRings + 3> flat, steep;  ///< 1 or 0
   };
+  struct Canvas;  // in feature_image_project.cpp
+  static float columns_per_rad(int columns);
   void project(std::span<const Return> returns);
+  void project_crowded(const Canvas& canvas, std::span<const Return> returns);
   void note(int column);
   [[nodiscard]] int place_of(int column) const;
   void classify_until(int place);

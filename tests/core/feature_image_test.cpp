@@ -9,8 +9,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
+#include <random>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lilo {
@@ -202,6 +206,44 @@ TEST(FeatureImage, WaitsForTheColumnBeside) {
       beside.push_back(static_cast<int>(column) - seen);
     }
     EXPECT_EQ(beside, (std::vector{-1, 0, 1})) << "seen in column " << seen;
+  }
+}
+
+// Against a loop over them one by one; with 64 rings there are more returns than pixels.
+TEST(FeatureImage, APixelKeepsItsFirstGoodReturn) {
+  std::mt19937 rng(1);
+  const auto below = [&rng](unsigned n) { return static_cast<int>(rng() % n); };
+  for (const int rings : {16, 64}) {
+    const BeamTable beams = test::even_beams(rings, -15.0, 15.0);
+    const int columns = standard::FeatureImage::columns_for(rings, 1024);
+    Scan all, good;
+    for (Scan* scan : {&all, &good}) {
+      scan->beams = beams;
+      scan->end_ns = 100'000'000;
+    }
+    std::set<std::pair<int, int>> taken;
+    for (int k = 0; k < 3 * rings * columns; ++k) {
+      const int column = below(static_cast<unsigned>(columns));
+      const bool is_near = below(5) == 0, is_none = below(5) == 0, is_foreign = below(5) == 0;
+      Return r = return_at(beams, static_cast<std::uint8_t>(below(static_cast<unsigned>(rings))),
+                           azimuth_of(column, columns), is_near ? 0.5 : 5.0 + below(40));
+      r.t_ns = k;
+      if (is_none) r.x_m = std::numeric_limits<float>::quiet_NaN();
+      if (is_foreign)
+        r.ring = static_cast<std::uint8_t>(rings + below(256U - static_cast<unsigned>(rings)));
+      all.returns.push_back(r);
+      if (is_near || is_none || is_foreign) continue;
+      if (taken.emplace(r.ring, column).second) good.returns.push_back(r);
+    }
+    standard::FeatureImage image(1024, {}), expected_image(1024, {});
+    const auto& found = image.build(all);
+    const auto& expected = expected_image.build(good);
+    EXPECT_GT(expected.size(), good.returns.size() / 2);
+    ASSERT_EQ(found.size(), expected.size()) << rings << " rings";
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      ASSERT_EQ(place_of(found[k]), place_of(expected[k])) << rings << " rings, feature " << k;
+      ASSERT_EQ(found[k].s, expected[k].s);
+    }
   }
 }
 
