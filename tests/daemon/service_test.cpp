@@ -141,7 +141,7 @@ TEST(Sensor, UnpluggedAndReplugged) {
 // Somebody sets the computer's clock an hour ahead while the sensor turns: the session goes on, and
 // no pose jumps, no latency is an hour.
 TEST(Clock, AStepOfAnHourBendsNothing) {
-  if (LILO_SANITIZED) GTEST_SKIP() << "a sanitizer has to be loaded first";
+  if (kSanitized) GTEST_SKIP() << "a sanitizer has to be loaded first";
   const std::string step_file = testing::TempDir() + "lilo_step_" + std::to_string(getpid());
   std::filesystem::remove(step_file);
   Lilod lilod("",
