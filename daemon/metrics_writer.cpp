@@ -1,5 +1,6 @@
 #include "daemon/metrics_writer.hpp"
 
+#include "daemon/metrics_file.hpp"
 #include "daemon/realtime.hpp"
 
 #include <pthread.h>
@@ -13,11 +14,11 @@ MetricsWriter::~MetricsWriter() {
   thread_.join();
 }
 
-bool MetricsWriter::write(const ReplacedFile& file, std::string_view text) {
-  if (file.is_none() || writing_.load(std::memory_order_acquire)) return true;
+bool MetricsWriter::write(const std::string& path, std::string_view text) {
+  if (path.empty() || writing_.load(std::memory_order_acquire)) return true;
   const bool written = written_;
   if (!thread_.joinable()) text_.reserve(2 * text.size());  // its numbers grow longer
-  file_ = file;
+  path_ = path;
   text_ = text;
   writing_.store(true, std::memory_order_release);
   given_.signal();
@@ -32,7 +33,7 @@ void MetricsWriter::run() {
     given_.wait();
     last = stop_;  // asked first: what was given before the end is written
     if (!writing_.load(std::memory_order_acquire)) continue;
-    written_ = file_.write(text_);
+    written_ = replace_file(path_, text_);
     writing_.store(false, std::memory_order_release);
   }
 }

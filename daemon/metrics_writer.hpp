@@ -1,6 +1,5 @@
 #pragma once
 
-#include "daemon/metrics_file.hpp"
 #include "daemon/wakeup.hpp"
 
 #include <atomic>
@@ -21,11 +20,11 @@ class MetricsWriter {
   MetricsWriter(const MetricsWriter&) = delete;
   MetricsWriter& operator=(const MetricsWriter&) = delete;
 
-  /// While the text before is still being written, this one is left out. False when the last one
-  /// could not be written. The first call with a file starts the thread, so that it comes after the
-  /// process has its memory locked and its stacks limited, and throws std::system_error when there
-  /// is none.
-  bool write(const ReplacedFile& file, std::string_view text);
+  /// An empty path: there is no file. While the text before is still being written, this one is
+  /// left out. False when the last one could not be written. The first call with a file starts the
+  /// thread, so that it comes after the process has its memory locked and its stacks limited, and
+  /// throws std::system_error when there is none.
+  bool write(const std::string& path, std::string_view text);
 
  private:
   void run();
@@ -34,8 +33,7 @@ class MetricsWriter {
   std::atomic<bool> stop_{false};
   /// Whose the three below are: the thread's while it is set, else the caller's.
   std::atomic<bool> writing_{false};
-  ReplacedFile file_{""};
-  std::string text_;
+  std::string path_, text_;
   bool written_ = true;
   std::thread thread_;
 };

@@ -3,6 +3,7 @@
 #include "daemon/base_frame.hpp"
 #include "daemon/clock.hpp"
 #include "daemon/map_file.hpp"
+#include "daemon/metrics_file.hpp"
 
 #include <utility>
 
@@ -17,7 +18,7 @@ Publisher::Publisher(boost::asio::io_context& io, const Config& config, Engine& 
       T_base_sensor_(to_pose(config.publish.T_base_sensor)),
       mounted_(!is_identity(config.publish.T_base_sensor)),
       record_(static_cast<std::size_t>(config.state.trajectory_poses)),
-      metrics_file_(metrics_path(config.health.metrics_file)),
+      metrics_path_(metrics_path(config.health.metrics_file)),
       sinks_(io),
       server_(io, config.subscribe, config.publish,
               {.last_pose = [this] { return last_pose_; },
@@ -33,7 +34,7 @@ void Publisher::configure(const Config& config) {
   config_ = config;
   sinks_.set(config.publish.sinks);
   server_.configure(config.subscribe);
-  metrics_file_ = ReplacedFile(metrics_path(config.health.metrics_file));
+  metrics_path_ = metrics_path(config.health.metrics_file);
 }
 
 void Publisher::take_reports() {
@@ -149,7 +150,7 @@ void Publisher::tick() {
   monitor_.collect(counts(), health_);
   if (config_.health.publish) broadcast(write_health_now());
   write_prometheus(message_.session, health_, metrics_);
-  if (!metrics_writer_.write(metrics_file_, metrics_)) monitor_.metrics_failed();
+  if (!metrics_writer_.write(metrics_path_, metrics_)) monitor_.metrics_failed();
 }
 
 }  // namespace lilo

@@ -64,8 +64,7 @@ class Publisher {
   JsonWriter pose_json_, health_json_;
   std::string_view last_pose_;
   Health health_;
-  ReplacedFile metrics_file_;
-  std::string metrics_;
+  std::string metrics_path_, metrics_;
   MetricsWriter metrics_writer_;
   std::uint64_t poses_sent_ = 0, poses_not_sent_ = 0;
   Sinks sinks_;

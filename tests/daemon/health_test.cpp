@@ -145,12 +145,11 @@ TEST(MetricsFile, IsReplacedWholeAndReadable) {
 TEST(MetricsFile, ReadersNeverSeeHalfOfIt) {
   const std::string path = testing::TempDir() + "lilo_whole_" + std::to_string(getpid());
   const std::string one(8000, '1'), two(50'000, '2');
-  const ReplacedFile file(path);
-  ASSERT_TRUE(file.write(one));
+  ASSERT_TRUE(replace_file(path, one));
   std::atomic<bool> stop{false};
   std::atomic<int> writes{0};
   std::thread writer([&] {
-    for (; !stop; ++writes) EXPECT_TRUE(file.write(writes % 2 == 0 ? two : one));
+    for (; !stop; ++writes) EXPECT_TRUE(replace_file(path, writes % 2 == 0 ? two : one));
   });
   while (writes < 200) {
     std::ostringstream text;
