@@ -148,6 +148,28 @@ void Solver::add_residual(const Asked& one, float data_weight, Sums& sums) {
   for (std::size_t k = 0; k < terms.size(); ++k) sum[k] += static_cast<double>(w * terms[k]);
 }
 
+/// Of the knots, from all bins; and the information that the data have of the pose.
+Solver::Equations Solver::data_equations(double span_s, Matrix6d& data_information) const {
+  const int n = kKnotSize * (config_.segments + 1);
+  Equations all{NormalMatrix::Zero(n, n), Unknowns::Zero(n)};
+  data_information.setZero();
+  for (int bin = 0; bin <= kBins; ++bin) {
+    const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
+    data_information += A / static_cast<double>(config_.data_weight);
+    const KnotWeights w = weights_at(static_cast<double>(bin) / kBins, config_.segments, span_s);
+    for (int i = 0; i < 4; ++i) {
+      const int row = kKnotSize * w.first + 6 * i;
+      const double wi = w.weight[static_cast<std::size_t>(i)];
+      all.b.segment<6>(row) += wi * c;
+      for (int j = 0; j < 4; ++j) {
+        all.H.block<6, 6>(row, kKnotSize * w.first + 6 * j) +=
+            wi * w.weight[static_cast<std::size_t>(j)] * A;
+      }
+    }
+  }
+  return all;
+}
+
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior) {
   // Far from the solution a part of the features shows the way as well as all of them.
   constexpr std::size_t kCoarseStride = 4;
@@ -163,28 +185,11 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   last_.assign(features.size(), {});
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, solution);
-    NormalMatrix H = NormalMatrix::Zero(n, n);
-    Unknowns b = Unknowns::Zero(n);
-    solution.data_information.setZero();
-    for (int bin = 0; bin <= kBins; ++bin) {
-      const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
-      solution.data_information += A / static_cast<double>(config_.data_weight);
-      const KnotWeights w =
-          weights_at(static_cast<double>(bin) / kBins, config_.segments, prior.span_s);
-      for (int i = 0; i < 4; ++i) {
-        const int row = kKnotSize * w.first + 6 * i;
-        const double wi = w.weight[static_cast<std::size_t>(i)];
-        b.segment<6>(row) += wi * c;
-        for (int j = 0; j < 4; ++j) {
-          H.block<6, 6>(row, kKnotSize * w.first + 6 * j) +=
-              wi * w.weight[static_cast<std::size_t>(j)] * A;
-        }
-      }
-    }
-    solution.surprise = surprise_of(prior, config_.segments, solution.trajectory.knots);
+    const Equations data = data_equations(prior.span_s, solution.data_information);
+    const Unknowns x = solution.trajectory.knots;
+    solution.surprise = surprise_of(prior, config_.segments, x);
     const Prior believed = loosened(prior, solution.surprise);
-    const NormalMatrix data_H = H;
-    const Unknowns data_b = b, x = solution.trajectory.knots;
+    auto [H, b] = data;
     add_prior(believed, config_.segments, x, H, b);
     const Eigen::LDLT<NormalMatrix> factors(H);
     const Unknowns step = factors.solve(b);
@@ -202,7 +207,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
       const UnrestPull by_unrest =
           factors.solve(pull_of_unrest(believed, config_.segments, solution.trajectory.knots));
       solution.end_by_unrest = by_unrest.middleRows<6>(n - kKnotSize);
-      solution.wildest_begin = wildest_begin(believed, config_.segments, x, data_H, data_b);
+      solution.wildest_begin = wildest_begin(believed, config_.segments, x, data.H, data.b);
     }
   }
   const KnotInformation unrest = process_information(prior.acceleration_density, prior.span_s);

@@ -92,12 +92,18 @@ class Solver {
   struct Sums {
     double weights = 0.0, squares = 0.0, structure = 0.0;
   };
+  /// H step = b of the deviation from the predicted motion, over all knots.
+  struct Equations {
+    NormalMatrix H;
+    Unknowns b;
+  };
   void accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                   Solution& solution);
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride,
                       const LocalMaps& maps);
   static void match(std::span<Asked> asked, LocalMaps& maps);
   void add_residual(const Asked& one, float data_weight, Sums& sums);
+  Equations data_equations(double span_s, Matrix6d& data_information) const;
 
   SolverConfig config_;
   Sampled sampled_;

@@ -33,12 +33,12 @@ void Unrest::learn(const Vector6d& correction, const EndByUnrest& end_by_unrest,
   }
 }
 
-Vector6d Unrest::density() const {
-  return usual_.array() * (unrest_axes() * log_ratio_).array().exp();
-}
+Vector6d Unrest::density() const { return density_at(log_ratio_); }
 
-Vector6d Unrest::wildest_density() const {
-  return usual_.array() * (unrest_axes() * PerUnrest::Constant(kMost)).array().exp();
+Vector6d Unrest::wildest_density() const { return density_at(PerUnrest::Constant(kMost)); }
+
+Vector6d Unrest::density_at(const PerUnrest& log_ratio) const {
+  return usual_.array() * (unrest_axes() * log_ratio).array().exp();
 }
 
 }  // namespace lilo::standard

@@ -14,9 +14,9 @@ namespace lilo::standard {
 /// a step down the slope of the squared correction, which asks nothing of the noise or of the
 /// spectrum of the motion. What the next scan says is asked with the wildest motion believed in: of
 /// wheels that hop once a turn, calm takes from its beginning what it took from the end before, and
-/// the two agree. Calm is believed slowly and never far, a surprise at once: a robot that
-/// stood for a minute sets off on cobbles. What the driver does, yaw and speed, is left as
-/// configured: learning it the same way made nothing better.
+/// the two agree. Calm is believed slowly and never far, a surprise at once: a robot that stood for
+/// a minute sets off on cobbles. What the driver does, yaw and speed, is left as configured:
+/// learning it the same way made nothing better.
 class Unrest {
  public:
   /// `usual`: densities of all axes, kept but for those of the unrest, where learning begins.
@@ -34,6 +34,8 @@ class Unrest {
   [[nodiscard]] Vector6d wildest_density() const;
 
  private:
+  [[nodiscard]] Vector6d density_at(const PerUnrest& log_ratio) const;
+
   Vector6d usual_;
   PerUnrest log_ratio_ = PerUnrest::Zero();  // to the usual density
   // Squares, as of late.
