@@ -8,12 +8,15 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <vector>
 
 namespace lilo {
 namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // what int64 nanoseconds can hold
+// Of a file, at a time: stdio's own 4 kB are three packets, and each such read a system call.
+constexpr std::size_t kReadBytes = 1U << 16U;
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -43,6 +46,7 @@ class PcapSource final : public PacketSource {
 
   std::string name_;
   double file_bytes_ = 0.0;
+  std::vector<char> buffer_;  // of the file, which pcap_ closes: it must outlive that
   Pcap pcap_;
   int link_type_ = 0;
   bool ended_ = false;
@@ -67,6 +71,9 @@ PcapSource::PcapSource(const std::string& path) : name_(path == "-" ? "standard 
     file_bytes_ = unknown ? 0.0 : static_cast<double>(bytes);
     if (!unknown && bytes == 0 && std::filesystem::is_regular_file(path))
       throw DriverError(path + ": expected a pcap or pcapng capture, found an empty file");
+    // Standard input outlives us, and keeps its own.
+    buffer_.resize(kReadBytes);
+    std::setvbuf(file.get(), buffer_.data(), _IOFBF, buffer_.size());
   }
   std::array<char, PCAP_ERRBUF_SIZE> reason{};
   pcap_.reset(pcap_fopen_offline_with_tstamp_precision(file.get(), PCAP_TSTAMP_PRECISION_NANO,
