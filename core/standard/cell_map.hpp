@@ -1,5 +1,8 @@
 #pragma once
 
+#include "core/standard/cell_table.hpp"
+#include "core/standard/moments.hpp"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -8,16 +11,6 @@
 
 /// The local map: points summed up in small cubic cells of a hash table.
 namespace lilo::standard {
-
-/// Symmetric 3x3 matrix: xx xy xz yy yz zz.
-using Symmetric = Eigen::Matrix<float, 6, 1>;
-
-template <typename T>
-Eigen::Matrix<T, 3, 3> matrix_of(const Eigen::Matrix<T, 6, 1>& s) {
-  Eigen::Matrix<T, 3, 3> m;
-  m << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-  return m;
-}
 
 /// What the map says about a point near one cell.
 struct Match {
@@ -38,33 +31,36 @@ struct CellMapConfig {
   float memory = 30.0F;
 };
 
-/// Hash table of cells. A cell's distribution is the Gaussian of the points in the 3x3x3 cells
-/// around it. It informs only along directions in which the points are thin against the window: a
-/// wall along its normal, a trunk across its axis, foliage hardly at all. What fills its window
-/// evenly would only hold the scan where it is (and drag it towards what was seen first).
-/// Memory is reserved at construction. Not thread-safe.
+/// A cell's distribution is the Gaussian of the points in the 3x3x3 cells around it. It informs
+/// only along directions in which the points are thin against the window: a wall along its normal,
+/// a trunk across its axis, foliage hardly at all. What fills its window evenly would only hold the
+/// scan where it is (and drag it towards what was seen first). Memory is reserved at construction.
+/// Not thread-safe.
 class CellMap {
  public:
-  struct Index {
-    std::int32_t x, y, z;
-    bool operator==(const Index&) const = default;
-  };
-  static constexpr std::int32_t kNone = -1;
+  static constexpr std::int32_t kNone = CellTable::kNone;
   /// A cell's place in the table, whether it is there or not.
   struct Place {
-    Index index{};
+    CellIndex index{};
     std::int32_t last = kNone;  ///< the cell that it was before, if a point has hardly moved
-    std::size_t slot = 0;       ///< only where there is no last
+    std::size_t home = 0;       ///< in the table; only where there is no last
+  };
+  /// Vector to the next sampled point on the same surface. The surface between the two was not seen
+  /// and counts as spread; without it a single ring on the ground looks like a plane through its
+  /// own rays, blind to pitch ("cone lock").
+  struct Reach {
+    explicit Reach(const Eigen::Vector3f& reach_m)
+        : square_m2(reach_m.squaredNorm()), outer_m2(outer(reach_m)) {}
+    float square_m2;
+    Symmetric outer_m2;
   };
 
   explicit CellMap(const CellMapConfig& config);
 
-  /// Adds a point of the odometry frame. `reach_m`: vector to the next sampled point on the same
-  /// surface. The surface between the two was not seen and counts as spread; without it a single
-  /// ring on the ground looks like a plane through its own rays, blind to pitch ("cone lock").
+  /// Adds a point of the odometry frame.
   void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
     const Place place = place_of(point_m);
-    add(open(place), place, point_m, reach_m);
+    add(open(place), place, point_m, Reach(reach_m));
   }
 
   /// The distribution around a point. Fits are cached: a young cell is fitted again after every
@@ -74,13 +70,52 @@ class CellMap {
   /// find() and insert() in steps. Each but the last asks the memory for what the next one reads;
   /// who takes them for many points in turn does not wait for it.
   /// `last`: what cell_at() answered for it before, the map being the same.
-  [[nodiscard]] Place place_of(const Eigen::Vector3d& point_m, std::int32_t last = kNone) const;
-  [[nodiscard]] std::int32_t cell_at(const Place& place) const;
-  Match match(std::int32_t at, const Eigen::Vector3d& point_m);
-  /// The cell there, made if missing.
-  std::int32_t open(const Place& place);
+  [[nodiscard]] Place place_of(const Eigen::Vector3d& point_m, std::int32_t last = kNone) const {
+    Place place{index_of(point_m), last};
+    if (last != kNone) {
+      __builtin_prefetch(&cells_[static_cast<std::size_t>(last)]);
+    } else {
+      place.home = table_.home_of(place.index);
+      table_.prefetch(place.home);
+    }
+    return place;
+  }
+  [[nodiscard]] std::int32_t cell_at(const Place& place) const {
+    std::size_t home = place.home;
+    if (place.last != kNone) {
+      if (cells_[static_cast<std::size_t>(place.last)].index == place.index) return place.last;
+      home = table_.home_of(place.index);
+    }
+    const std::int32_t at = table_.find(home, CellTable::tag_of(place.index));
+    if (at != kNone) __builtin_prefetch(&cells_[static_cast<std::size_t>(at)]);
+    return at;
+  }
+  Match match(std::int32_t at, const Eigen::Vector3d& point_m) {
+    if (at == kNone) return {};
+    Cell& cell = cells_[static_cast<std::size_t>(at)];
+    if (keyframe_ >= cell.refit_at) fit(cell);
+    if (cell.information.isZero(0.0F)) return {};
+    return {(point_m - center_of(cell.index)).cast<float>() - cell.mean_m, &cell.information};
+  }
+  /// The cell there, made if missing; kNone where there is no room.
+  std::int32_t open(const Place& place) {
+    const std::int32_t at = table_.find(place.home, CellTable::tag_of(place.index));
+    if (at == kNone) return make(place);
+    __builtin_prefetch(&sums_[static_cast<std::size_t>(at)], 1);
+    return at;
+  }
   void add(std::int32_t at, const Place& place, const Eigen::Vector3d& point_m,
-           const Eigen::Vector3f& reach_m);
+           const Reach& reach) {
+    if (at == kNone) return;
+    Moments& sums = sums_[static_cast<std::size_t>(at)];
+    // Seen through a window of three cells, a longer reach is just "all of it".
+    const float window_m2 = 9.0F * config_.cell_m * config_.cell_m;
+    const float spread = reach.square_m2 > window_m2 ? window_m2 / (12.0F * reach.square_m2)
+                                                     : 1.0F / 12.0F;  // if even
+    const Eigen::Vector3f p = (point_m - center_of(place.index)).cast<float>();
+    const float kept = sums[0] >= config_.memory ? kept_ : 1.0F;
+    add_to(sums, kept, moments_of(p, spread, reach.outer_m2));
+  }
 
   void end_keyframe() { ++keyframe_; }
 
@@ -98,55 +133,45 @@ class CellMap {
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
 
  private:
-  /// An entry of the hash table. The tag is the index, cut to what differs between cells of one
-  /// window of 2048 x 2048 x 1024 cells, so that a cell need not be read to know that it is
-  /// another.
-  struct Slot {
-    std::int32_t at = kNone;  // in cells_ and sums_
-    std::uint32_t tag = 0;
-  };
   /// What find() reads: one cache line.
   struct alignas(64) Cell {
-    Index index{};
+    CellIndex index{};
     std::uint32_t born = 0;                            // keyframe
     std::uint32_t refit_at = 0;                        // keyframe from which the fit is out of date
     Eigen::Vector3f mean_m = Eigen::Vector3f::Zero();  // from the cell's centre
     Symmetric information = Symmetric::Zero();         // zero: too few points
   };
-  /// What insert() sums, from the cell's centre.
-  struct Sums {
-    float count = 0.0F;
-    Eigen::Vector3f point = Eigen::Vector3f::Zero();
-    Symmetric square = Symmetric::Zero();
-  };
-
   struct Neighbour {
     std::int32_t at;
     float x_m, y_m, z_m;  // from the one in the middle
   };
   using Neighbours = std::array<Neighbour, 27>;
 
-  [[nodiscard]] Index index_of(const Eigen::Vector3d& p) const;
-  [[nodiscard]] Eigen::Vector3d center_of(const Index& i) const;
-  [[nodiscard]] std::size_t slot_of(const Index& i) const;
-  [[nodiscard]] static std::uint32_t tag_of(const Index& i);
-  /// From one cell to another, the short way round the tags' window.
-  [[nodiscard]] static Index between(std::uint32_t from_tag, std::uint32_t to_tag);
-  /// From a cell's own slot on, that which holds it, or else the first empty one.
-  [[nodiscard]] std::size_t slot_from(std::size_t slot, std::uint32_t tag) const;
+  [[nodiscard]] CellIndex index_of(const Eigen::Vector3d& p) const {
+    return {floor_of(p.x() * per_m_), floor_of(p.y() * per_m_), floor_of(p.z() * per_m_)};
+  }
+  [[nodiscard]] Eigen::Vector3d center_of(const CellIndex& i) const {
+    return static_cast<double>(config_.cell_m) * Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5);
+  }
+  /// std::floor() is a call where the processor need not have SSE 4.1.
+  static std::int32_t floor_of(double v) {
+    constexpr std::uint32_t kAbove = 1U << 30U;  // zero: from there, to cut off is to round down
+    return static_cast<std::int32_t>(
+        static_cast<std::uint32_t>(static_cast<std::int32_t>(v + kAbove)) - kAbove);
+  }
+  std::int32_t make(const Place& place);
   /// Of the 27 cells around and including one, those that are there; how many.
-  std::size_t neighbours_of(const Index& i, Neighbours& found) const;
-  [[nodiscard]] Sums sums_around(const Index& i) const;
+  std::size_t neighbours_of(const CellIndex& i, Neighbours& found) const;
+  [[nodiscard]] Moments moments_around(const CellIndex& i) const;
   void fit(Cell& cell) const;
   void remove(std::size_t slot);
 
   CellMapConfig config_;
   double per_m_;
   float kept_;  // of what a cell remembers, when one more point comes
-  std::size_t mask_;
-  std::vector<Slot> slots_;
+  CellTable table_;
   std::vector<Cell> cells_;
-  std::vector<Sums> sums_;
+  std::vector<Moments> sums_;  // what insert() sums, from the cell's centre
   std::vector<std::int32_t> free_;
   std::size_t sweep_ = 0;
   std::uint32_t keyframe_ = 1;

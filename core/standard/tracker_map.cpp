@@ -74,7 +74,7 @@ void Tracker::insert_held() {
     for (std::size_t k = 0; k < n; ++k) {
       const Feature& f = held_.features[first + k];
       const Waiting& one = waiting[k];
-      const Eigen::Vector3f reach = sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m});
+      const CellMap::Reach reach(sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m}));
       maps_.fine(f.kind).add(one.fine_cell, one.fine, one.point_m, reach);
       maps_.coarse(f.kind).add(one.coarse_cell, one.coarse, one.point_m, reach);
     }
