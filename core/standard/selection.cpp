@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
+#include <utility>
 
 namespace lilo::standard {
 
@@ -47,19 +49,32 @@ bool Selection::take_evenly(const std::vector<Feature>& all) {
   const std::array<float, kKinds> per_m{1.0F / voxel_m_[0], 1.0F / voxel_m_[1]};
   std::array<std::uint64_t, kMaxRings> last{};  // of each ring: often the same again
   bool done = true;
-  for (const Feature& f : all) {
-    const auto kind = static_cast<std::size_t>(f.kind);
-    ++offered[kind];
-    if (count[kind] >= 2 * goal_[kind]) {
-      done = false;
-      continue;
+  // Which of them lie in another voxel than the one before is not for a processor to foretell.
+  // Those that do are gathered first, without a branch.
+  constexpr std::size_t kAtATime = 64;
+  std::array<const Feature*, kAtATime> fresh;
+  std::array<std::uint64_t, kAtATime> voxels;
+  for (std::span<const Feature> rest = all; !rest.empty();) {
+    const auto some = rest.first(std::min(rest.size(), kAtATime));
+    rest = rest.subspan(some.size());
+    std::size_t n = 0;
+    for (const Feature& f : some) {
+      const auto kind = static_cast<std::size_t>(f.kind);
+      ++offered[kind];
+      fresh[n] = &f;
+      voxels[n] = voxel_of(f, per_m[kind]);
+      const bool same = voxels[n] == std::exchange(last[f.ring], voxels[n]);
+      n += static_cast<std::size_t>(!same);
     }
-    const std::uint64_t voxel = voxel_of(f, per_m[kind]);
-    if (voxel == last[f.ring]) continue;
-    last[f.ring] = voxel;
-    if (!take(voxel)) continue;
-    ++count[kind];
-    chosen_.push_back(f);
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto kind = static_cast<std::size_t>(fresh[k]->kind);
+      if (count[kind] >= 2 * goal_[kind]) {
+        done = false;
+      } else if (take(voxels[k])) {
+        ++count[kind];
+        chosen_.push_back(*fresh[k]);
+      }
+    }
   }
   for (std::size_t k = 0; k < kKinds; ++k) {
     // On surfaces the number goes with the inverse square of the voxel; 0.35 instead of 0.5 damps.
