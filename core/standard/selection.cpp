@@ -94,13 +94,19 @@ void thin_out(const std::vector<Feature>& all, std::size_t most, std::vector<Fea
   for (std::size_t ring = 0; ring < owed.size(); ++ring) {
     owed[ring] = static_cast<std::uint32_t>(ring * kGolden) * whole >> 32U;
   }
-  fewer.clear();
+  fewer.resize(most);
+  std::size_t n = 0;
   for (const Feature& f : all) {
-    owed[f.ring] += most;
-    if (owed[f.ring] < whole) continue;
-    owed[f.ring] -= whole;
-    if (fewer.size() < most) fewer.push_back(f);
+    if (n == most) break;
+    // Which ones are due is not to be foretold either.
+    std::uint64_t& parts = owed[f.ring];
+    parts += most;
+    const bool due = parts >= whole;
+    parts -= due ? whole : 0;
+    fewer[n] = f;
+    n += static_cast<std::size_t>(due);
   }
+  fewer.resize(n);
 }
 
 }  // namespace lilo::standard
