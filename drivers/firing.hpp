@@ -46,25 +46,29 @@ std::array<std::int32_t, kLasers> channels(const std::byte* first) {
   return raw;
 }
 
-/// Returns of a column on their way into a scan: written first and counted only if wanted, without
-/// a branch.
+/// Returns of a column, written at the end of a scan and counted only if wanted, without a branch.
+/// The scan must have room for all of them, or it allocates.
 template <std::size_t kMost>
 class Kept {
  public:
+  explicit Kept(std::vector<Return>& out) : out_(out), count_(out.size()) {
+    out.resize(count_ + kMost);
+  }
+  Kept(const Kept&) = delete;
+  Kept& operator=(const Kept&) = delete;
+  ~Kept() { out_.resize(count_); }
+
   /// `wanted`: 1 or 0.
   template <std::size_t kLasers>
   void add(const Firing<kLasers>& seen, std::size_t laser, std::int32_t t_ns, ReturnKind kind,
            std::int32_t wanted) {
-    seen.write(laser, t_ns, kind, returns_[count_]);
+    seen.write(laser, t_ns, kind, out_[count_]);
     count_ += static_cast<std::size_t>(wanted);
-  }
-  void append_to(std::vector<Return>& out) const {
-    out.insert(out.end(), returns_.begin(), returns_.begin() + static_cast<std::ptrdiff_t>(count_));
   }
 
  private:
-  std::array<Return, kMost> returns_;
-  std::size_t count_ = 0;
+  std::vector<Return>& out_;
+  std::size_t count_;
 };
 
 }  // namespace lilo

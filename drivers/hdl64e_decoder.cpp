@@ -193,13 +193,12 @@ void Hdl64eDecoder::append(std::size_t column, std::int32_t t_ns, std::vector<Re
 // Upper and lower laser of one number fire together, so they alternate in the scan.
 void Hdl64eDecoder::append_single(int pair, std::int32_t t_ns, std::vector<Return>& out) const {
   const Bank upper = project(2 * pair), lower = project(2 * pair + 1);
-  Kept<2 * kBank> kept;
+  Kept<2 * kBank> kept(out);
   for (std::size_t k = 0; k < kBank; ++k) {
     const std::int32_t at_ns = t_ns + laser_ns_[k];
     kept.add(upper, k, at_ns, ReturnKind::strongest, upper.in_range[k]);
     kept.add(lower, k, at_ns, ReturnKind::strongest, lower.in_range[k]);
   }
-  kept.append_to(out);
 }
 
 // No manual page says which pair is the strongest and which the last; the order here is that of
@@ -207,7 +206,7 @@ void Hdl64eDecoder::append_single(int pair, std::int32_t t_ns, std::vector<Retur
 void Hdl64eDecoder::append_dual(int shot, std::int32_t t_ns, std::vector<Return>& out) const {
   const std::array<Bank, 2> first{project(4 * shot), project(4 * shot + 1)};
   const std::array<Bank, 2> second{project(4 * shot + 2), project(4 * shot + 3)};
-  Kept<4 * kBank> kept;
+  Kept<4 * kBank> kept(out);
   for (std::size_t k = 0; k < kBank; ++k) {
     const std::int32_t at_ns = t_ns + laser_ns_[k];
     for (std::size_t bank = 0; bank < 2; ++bank) {
@@ -220,7 +219,6 @@ void Hdl64eDecoder::append_dual(int shot, std::int32_t t_ns, std::vector<Return>
                want_second ? second[bank].in_range[k] : 0);
     }
   }
-  kept.append_to(out);
 }
 
 }  // namespace lilo

@@ -197,11 +197,10 @@ void Vlp16Decoder::append_single(int block, int sequence, std::int32_t t_ns,
                                  std::vector<Return>& out) const {
   const ReturnKind kind = mode_ == ReturnMode::last ? ReturnKind::last : ReturnKind::strongest;
   const Sequence seen = project(block, sequence);
-  Kept<kLasers> kept;
+  Kept<kLasers> kept(out);
   for (std::size_t k = 0; k < kLasers; ++k, t_ns += kLaserNs) {
     kept.add(seen, k, t_ns, kind, seen.in_range[k]);
   }
-  kept.append_to(out);
 }
 
 // Even blocks hold the last echo, odd ones the strongest, or the second strongest where the last
@@ -209,7 +208,7 @@ void Vlp16Decoder::append_single(int block, int sequence, std::int32_t t_ns,
 void Vlp16Decoder::append_dual(int shot, int sequence, std::int32_t t_ns,
                                std::vector<Return>& out) const {
   const Sequence last = project(2 * shot, sequence), other = project(2 * shot + 1, sequence);
-  Kept<std::size_t{2} * kLasers> kept;
+  Kept<std::size_t{2} * kLasers> kept(out);
   for (std::size_t k = 0; k < kLasers; ++k, t_ns += kLaserNs) {
     const bool same = last.steps[k] == other.steps[k];
     const bool last_is_strongest = last.intensity(k) > other.intensity(k);
@@ -220,7 +219,6 @@ void Vlp16Decoder::append_dual(int shot, int sequence, std::int32_t t_ns,
              want_last ? last.in_range[k] : 0);
     kept.add(other, k, t_ns, ReturnKind::strongest, want_other ? other.in_range[k] : 0);
   }
-  kept.append_to(out);
 }
 
 }  // namespace lilo
