@@ -70,15 +70,19 @@ std::size_t CellMap::neighbours_of(const CellIndex& i, Neighbours& found) const 
       }
     }
   }
-  const auto cells_m = [&](std::size_t cells) {
-    return config_.cell_m * (static_cast<float>(cells) - 1.0F);
-  };
+  const std::array<float, 3> across_m{-config_.cell_m, 0.0F, config_.cell_m};
   std::size_t count = 0;
-  for (n = 0; n < homes.size(); ++n) {
-    const std::int32_t at = table_.find(homes[n], tags[n]);
-    if (at == kNone) continue;
-    __builtin_prefetch(&sums_[static_cast<std::size_t>(at)]);
-    found[count++] = {at, cells_m(n / 9), cells_m(n / 3 % 3), cells_m(n % 3)};
+  n = 0;
+  for (const float x_m : across_m) {
+    for (const float y_m : across_m) {
+      for (const float z_m : across_m) {
+        const std::int32_t at = table_.find(homes[n], tags[n]);
+        ++n;
+        if (at == kNone) continue;
+        __builtin_prefetch(&sums_[static_cast<std::size_t>(at)]);
+        found[count++] = {at, x_m, y_m, z_m};
+      }
+    }
   }
   return count;
 }
