@@ -79,7 +79,7 @@ std::size_t CellMap::neighbours_of(const CellIndex& i, Neighbours& found) const 
         const std::int32_t at = table_.find(homes[n], tags[n]);
         ++n;
         if (at == kNone) continue;
-        __builtin_prefetch(&sums_[static_cast<std::size_t>(at)]);
+        prefetch_sums(at);
         found[count++] = {at, x_m, y_m, z_m};
       }
     }

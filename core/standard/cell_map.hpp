@@ -101,7 +101,7 @@ class CellMap {
   std::int32_t open(const Place& place) {
     const std::int32_t at = table_.find(place.home, CellTable::tag_of(place.index));
     if (at == kNone) return make(place);
-    __builtin_prefetch(&sums_[static_cast<std::size_t>(at)], 1);
+    prefetch_sums(at);
     return at;
   }
   void add(std::int32_t at, const Place& place, const Eigen::Vector3d& point_m,
@@ -158,6 +158,12 @@ class CellMap {
     constexpr std::uint32_t kAbove = 1U << 30U;  // zero: from there, to cut off is to round down
     return static_cast<std::int32_t>(
         static_cast<std::uint32_t>(static_cast<std::int32_t>(v + kAbove)) - kAbove);
+  }
+  /// Mostly they lie across two cache lines.
+  void prefetch_sums(std::int32_t at) const {
+    const Moments& sums = sums_[static_cast<std::size_t>(at)];
+    __builtin_prefetch(&sums.front());
+    __builtin_prefetch(&sums.back());
   }
   std::int32_t make(const Place& place);
   /// Of the 27 cells around and including one, those that are there; how many.
