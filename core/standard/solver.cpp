@@ -161,12 +161,13 @@ Solver::Equations Solver::data_equations(double span_s, Matrix6d& data_informati
       const int row = kKnotSize * w.first + 6 * i;
       const double wi = w.weight[static_cast<std::size_t>(i)];
       all.b.segment<6>(row) += wi * c;
-      for (int j = 0; j < 4; ++j) {
+      for (int j = i; j < 4; ++j) {
         all.H.block<6, 6>(row, kKnotSize * w.first + 6 * j) +=
             wi * w.weight[static_cast<std::size_t>(j)] * A;
       }
     }
   }
+  all.H.triangularView<Eigen::StrictlyLower>() = all.H.transpose();
   return all;
 }
 
