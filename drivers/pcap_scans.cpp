@@ -39,7 +39,8 @@ void read_table_ahead(const std::string& path, const SensorConfig& config, ScanB
   }
 }
 
-// Two scans take turns: one is written while the other waits to be fetched.
+// Two scans take turns: one is written, the other waits to be fetched or is with the caller, who
+// brings it back. So the memory of no third one goes round through the caches.
 class PcapScans final : public ScanSource, private ScanSink {
  public:
   PcapScans(const std::string& path, const SensorConfig& config)
@@ -48,6 +49,7 @@ class PcapScans final : public ScanSource, private ScanSink {
   }
 
   bool next(Scan& scan) override {
+    std::swap(scan, *idle_);
     while (finished_ == nullptr) {
       PacketView packet;
       if (packets_->read(packet, std::chrono::milliseconds(0)) != ReadResult::packet) return false;
@@ -70,12 +72,13 @@ class PcapScans final : public ScanSource, private ScanSink {
   // A packet ends at most one scan: it spans less than a revolution.
   Scan& exchange(Scan& finished) override {
     finished_ = &finished;
-    return &finished == &scans_[0] ? scans_[1] : scans_[0];
+    return *std::exchange(idle_, &finished);
   }
 
   std::unique_ptr<PacketSource> packets_;
   ReceivedSpan received_;
   Scan scans_[2];
+  Scan* idle_ = &scans_[1];  // not the one being written
   Scan* finished_ = nullptr;
   ScanBuilder builder_;
 };

@@ -24,7 +24,7 @@ class ScanSource {
   ScanSource& operator=(const ScanSource&) = delete;
   virtual ~ScanSource() = default;
 
-  /// Fills `scan` with the next one; false at the end.
+  /// Fills `scan` with the next one; false at the end, and what `scan` holds then is of no use.
   virtual bool next(Scan& scan) = 0;
   [[nodiscard]] virtual DriverCounts driver_counts() const = 0;
   [[nodiscard]] virtual SourceCounts source_counts() const = 0;
