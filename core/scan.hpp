@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <new>
 #include <vector>
 
 /// One revolution of the sensor as the drivers hand it to the odometry.
@@ -26,6 +28,17 @@ struct Return {
   std::uint8_t reserved;
 };
 static_assert(sizeof(Return) == 24);
+
+/// A vector that grows does not write zeros first where returns are written next: those of an
+/// HDL-64E are 3 MB a turn.
+template <typename T>
+struct LeavesUnwritten : std::allocator<T> {
+  template <typename U>
+  void construct(U* place) noexcept {
+    ::new (static_cast<void*>(place)) U;
+  }
+};
+using Returns = std::vector<Return, LeavesUnwritten<Return>>;
 
 /// Where the stamps of a scan come from.
 enum class ClockSource : std::uint8_t {
@@ -66,7 +79,7 @@ struct Scan {
   BeamTable beams;
   /// Firing order; of two echoes of a VLP-16's firing the last comes first, of an HDL-64E's the
   /// strongest (measured, drivers/README.md). Capacity is reserved once and kept.
-  std::vector<Return> returns;
+  Returns returns;
 
   /// Empties the scan for reuse; keeps the memory.
   void clear() {

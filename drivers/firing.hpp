@@ -51,24 +51,26 @@ std::array<std::int32_t, kLasers> channels(const std::byte* first) {
 template <std::size_t kMost>
 class Kept {
  public:
-  explicit Kept(std::vector<Return>& out) : out_(out), count_(out.size()) {
-    out.resize(count_ + kMost);
+  explicit Kept(Returns& out) : out_(out) {
+    const std::size_t before = out.size();
+    out.resize(before + kMost);
+    next_ = out.data() + before;
   }
   Kept(const Kept&) = delete;
   Kept& operator=(const Kept&) = delete;
-  ~Kept() { out_.resize(count_); }
+  ~Kept() { out_.resize(static_cast<std::size_t>(next_ - out_.data())); }
 
   /// `wanted`: 1 or 0.
   template <std::size_t kLasers>
   void add(const Firing<kLasers>& seen, std::size_t laser, std::int32_t t_ns, ReturnKind kind,
            std::int32_t wanted) {
-    seen.write(laser, t_ns, kind, out_[count_]);
-    count_ += static_cast<std::size_t>(wanted);
+    seen.write(laser, t_ns, kind, *next_);
+    next_ += wanted;
   }
 
  private:
-  std::vector<Return>& out_;
-  std::size_t count_;
+  Returns& out_;
+  Return* next_;
 };
 
 }  // namespace lilo

@@ -182,7 +182,7 @@ Hdl64eDecoder::Bank Hdl64eDecoder::project(int block) const {
   return bank;
 }
 
-void Hdl64eDecoder::append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const {
+void Hdl64eDecoder::append(std::size_t column, std::int32_t t_ns, Returns& out) const {
   if (dual_) {
     append_dual(static_cast<int>(column), t_ns, out);
   } else {
@@ -191,7 +191,7 @@ void Hdl64eDecoder::append(std::size_t column, std::int32_t t_ns, std::vector<Re
 }
 
 // Upper and lower laser of one number fire together, so they alternate in the scan.
-void Hdl64eDecoder::append_single(int pair, std::int32_t t_ns, std::vector<Return>& out) const {
+void Hdl64eDecoder::append_single(int pair, std::int32_t t_ns, Returns& out) const {
   const Bank upper = project(2 * pair), lower = project(2 * pair + 1);
   Kept<2 * kBank> kept(out);
   for (std::size_t k = 0; k < kBank; ++k) {
@@ -203,7 +203,7 @@ void Hdl64eDecoder::append_single(int pair, std::int32_t t_ns, std::vector<Retur
 
 // No manual page says which pair is the strongest and which the last; the order here is that of
 // velodyne_decoder. Equal ones are one echo.
-void Hdl64eDecoder::append_dual(int shot, std::int32_t t_ns, std::vector<Return>& out) const {
+void Hdl64eDecoder::append_dual(int shot, std::int32_t t_ns, Returns& out) const {
   const std::array<Bank, 2> first{project(4 * shot), project(4 * shot + 1)};
   const std::array<Bank, 2> second{project(4 * shot + 2), project(4 * shot + 3)};
   Kept<4 * kBank> kept(out);

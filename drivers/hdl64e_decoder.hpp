@@ -51,7 +51,7 @@ class Hdl64eDecoder final : public PacketDecoder {
   [[nodiscard]] std::size_t max_column_returns() const override {
     return 2 * kBank * (dual_ && choice_ == ReturnChoice::both ? 2 : 1);
   }
-  void append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const override;
+  void append(std::size_t column, std::int32_t t_ns, Returns& out) const override;
 
   [[nodiscard]] bool is_dual() const { return dual_; }
   /// 0 while no table is in use.
@@ -76,8 +76,8 @@ class Hdl64eDecoder final : public PacketDecoder {
 
   [[nodiscard]] bool find_dual(const std::byte* packet) const;
   [[nodiscard]] Bank project(int block) const;
-  void append_single(int pair, std::int32_t t_ns, std::vector<Return>& out) const;
-  void append_dual(int shot, std::int32_t t_ns, std::vector<Return>& out) const;
+  void append_single(int pair, std::int32_t t_ns, Returns& out) const;
+  void append_dual(int shot, std::int32_t t_ns, Returns& out) const;
 
   const AzimuthTable& azimuths_;
   double min_range_m_, max_range_m_;

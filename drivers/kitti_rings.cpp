@@ -17,7 +17,7 @@ float elevation_rad(const Return& r) { return std::atan2(r.z_m, std::hypot(r.x_m
 
 // Index of the first return of each ring. The azimuth falling from behind to ahead begins one, if
 // most of a turn lies between; noise around straight ahead does not.
-std::vector<std::size_t> ring_starts(const std::vector<Return>& returns) {
+std::vector<std::size_t> ring_starts(const Returns& returns) {
   std::vector<std::size_t> starts;
   float highest = 0.0F, before = 0.0F;
   for (std::size_t i = 0; i < returns.size(); ++i) {
@@ -34,7 +34,7 @@ std::vector<std::size_t> ring_starts(const std::vector<Return>& returns) {
   return starts;
 }
 
-float median_elevation(const std::vector<Return>& returns, std::size_t begin, std::size_t end,
+float median_elevation(const Returns& returns, std::size_t begin, std::size_t end,
                        std::vector<float>& scratch) {
   scratch.clear();
   for (std::size_t i = begin; i < end; ++i) scratch.push_back(elevation_rad(returns[i]));
@@ -43,7 +43,7 @@ float median_elevation(const std::vector<Return>& returns, std::size_t begin, st
   return *middle;
 }
 
-bool rings_from_order(std::vector<Return>& returns, BeamTable& beams) {
+bool rings_from_order(Returns& returns, BeamTable& beams) {
   auto bounds = ring_starts(returns);
   const int count = static_cast<int>(bounds.size());
   if (count < kMinRings || count > kMaxRingsFound) return false;
@@ -60,7 +60,7 @@ bool rings_from_order(std::vector<Return>& returns, BeamTable& beams) {
   return std::is_sorted(beams.elevation_rad.begin(), beams.elevation_rad.begin() + count);
 }
 
-void rings_from_elevation(std::vector<Return>& returns, BeamTable& beams) {
+void rings_from_elevation(Returns& returns, BeamTable& beams) {
   constexpr float kStep = (kHighestBinRad - kLowestBinRad) / (kBinCount - 1);
   beams.ring_count = kBinCount;
   for (int i = 0; i < kBinCount; ++i)
@@ -74,7 +74,7 @@ void rings_from_elevation(std::vector<Return>& returns, BeamTable& beams) {
 
 }  // namespace
 
-void recover_kitti_rings(std::vector<Return>& returns, BeamTable& beams) {
+void recover_kitti_rings(Returns& returns, BeamTable& beams) {
   beams = {};
   if (!rings_from_order(returns, beams)) rings_from_elevation(returns, beams);
 }

@@ -12,6 +12,6 @@ namespace lilo {
 /// first, each once around counter-clockwise from straight ahead: where the azimuth falls back to
 /// ahead, the next ring begins. Where that finds no plausible number of rings (60 to 64), the
 /// returns were sorted otherwise, and rings are bins of elevation instead.
-void recover_kitti_rings(std::vector<Return>& returns, BeamTable& beams);
+void recover_kitti_rings(Returns& returns, BeamTable& beams);
 
 }  // namespace lilo

@@ -59,7 +59,7 @@ Layout layout_of(const fs::path& folder) {
 
 // Turns every ray up by `angle_rad` in its own vertical plane. IMLS-SLAM, CT-ICP and KISS-ICP do
 // the same as a rotation about p x z.
-void raise_rays(std::vector<Return>& returns, BeamTable& beams, double angle_rad) {
+void raise_rays(Returns& returns, BeamTable& beams, double angle_rad) {
   if (angle_rad == 0.0) return;
   const float c = static_cast<float>(std::cos(angle_rad));
   const float s = static_cast<float>(std::sin(angle_rad));
@@ -128,7 +128,7 @@ class KittiScans final : public ScanSource {
   [[nodiscard]] std::string error() const override { return error_; }
 
  private:
-  bool read_points(const fs::path& file, std::vector<Return>& returns) {
+  bool read_points(const fs::path& file, Returns& returns) {
     std::ifstream in(file, std::ios::binary);
     buffer_.resize(in ? fs::file_size(file) : 0);
     in.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
@@ -147,7 +147,7 @@ class KittiScans final : public ScanSource {
   }
 
   // After the rings: those are told by the order of all points.
-  void keep_in_range(std::vector<Return>& returns) const {
+  void keep_in_range(Returns& returns) const {
     const auto out_of_range = [this](const Return& r) {
       const auto range_m = static_cast<double>(std::hypot(r.x_m, r.y_m, r.z_m));
       return range_m < config_.min_range_m || range_m > config_.max_range_m;

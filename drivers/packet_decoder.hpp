@@ -43,7 +43,7 @@ class PacketDecoder {
   /// The most returns that one column can have in the mode of this packet.
   [[nodiscard]] virtual std::size_t max_column_returns() const = 0;
   /// Adds the returns of one column, in firing order; `t_ns` is the time of its first firing.
-  virtual void append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const = 0;
+  virtual void append(std::size_t column, std::int32_t t_ns, Returns& out) const = 0;
 };
 
 }  // namespace lilo

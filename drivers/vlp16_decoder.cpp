@@ -155,7 +155,7 @@ double Vlp16Decoder::packet_period_ns() const {
   return static_cast<double>(kBlockNs) * wire::kBlocks / blocks_per_shot(mode_);
 }
 
-void Vlp16Decoder::append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const {
+void Vlp16Decoder::append(std::size_t column, std::int32_t t_ns, Returns& out) const {
   const int shot = static_cast<int>(column) / 2;
   const int sequence = static_cast<int>(column) % 2;
   if (mode_ == ReturnMode::dual) {
@@ -193,8 +193,7 @@ Vlp16Decoder::Sequence Vlp16Decoder::project(int block, int sequence) const {
   return seen;
 }
 
-void Vlp16Decoder::append_single(int block, int sequence, std::int32_t t_ns,
-                                 std::vector<Return>& out) const {
+void Vlp16Decoder::append_single(int block, int sequence, std::int32_t t_ns, Returns& out) const {
   const ReturnKind kind = mode_ == ReturnMode::last ? ReturnKind::last : ReturnKind::strongest;
   const Sequence seen = project(block, sequence);
   Kept<kLasers> kept(out);
@@ -205,8 +204,7 @@ void Vlp16Decoder::append_single(int block, int sequence, std::int32_t t_ns,
 
 // Even blocks hold the last echo, odd ones the strongest, or the second strongest where the last
 // is the strongest; equal ones are one echo (manual, 9.3.1.5).
-void Vlp16Decoder::append_dual(int shot, int sequence, std::int32_t t_ns,
-                               std::vector<Return>& out) const {
+void Vlp16Decoder::append_dual(int shot, int sequence, std::int32_t t_ns, Returns& out) const {
   const Sequence last = project(2 * shot, sequence), other = project(2 * shot + 1, sequence);
   Kept<std::size_t{2} * kLasers> kept(out);
   for (std::size_t k = 0; k < kLasers; ++k, t_ns += kLaserNs) {

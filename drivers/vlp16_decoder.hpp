@@ -34,7 +34,7 @@ class Vlp16Decoder final : public PacketDecoder {
     const bool twice = mode_ == ReturnMode::dual && choice_ == ReturnChoice::both;
     return std::size_t{kLasers} * (twice ? 2 : 1);
   }
-  void append(std::size_t column, std::int32_t t_ns, std::vector<Return>& out) const override;
+  void append(std::size_t column, std::int32_t t_ns, Returns& out) const override;
 
   [[nodiscard]] ReturnMode mode() const { return mode_; }
   [[nodiscard]] std::uint8_t product_id() const { return product_id_; }
@@ -60,8 +60,8 @@ class Vlp16Decoder final : public PacketDecoder {
   void find_gap(const std::byte* packet);
   void place_columns(const std::byte* packet);
   [[nodiscard]] Sequence project(int block, int sequence) const;
-  void append_single(int block, int sequence, std::int32_t t_ns, std::vector<Return>& out) const;
-  void append_dual(int shot, int sequence, std::int32_t t_ns, std::vector<Return>& out) const;
+  void append_single(int block, int sequence, std::int32_t t_ns, Returns& out) const;
+  void append_dual(int shot, int sequence, std::int32_t t_ns, Returns& out) const;
 
   const AzimuthTable& azimuths_;
   Beams beam_{};

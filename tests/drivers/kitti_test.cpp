@@ -38,10 +38,10 @@ std::string refusal(const std::string& path) {
 
 // 64 rings from +2 to -24.8 degrees, highest first, each counter-clockwise from straight ahead,
 // with holes and with the encoder's noise at the start.
-std::vector<Return> rings_as_stored(std::vector<int>& truth) {
+Returns rings_as_stored(std::vector<int>& truth) {
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0.0, 0.02 * kDeg);
-  std::vector<Return> returns;
+  Returns returns;
   truth.clear();
   for (int stored = 0; stored < 64; ++stored) {
     const double w = (2.0 - 26.8 * stored / 63.0) * kDeg;
