@@ -29,8 +29,8 @@ struct Return {
 };
 static_assert(sizeof(Return) == 24);
 
-/// A vector that grows does not write zeros first where returns are written next: those of an
-/// HDL-64E are 3 MB a turn.
+/// A vector that grows by resize() does not write zeros first where returns are written next: those
+/// of an HDL-64E are 3 MB a turn. Who wants the memory touched gives resize() or assign() a value.
 template <typename T>
 struct LeavesUnwritten : std::allocator<T> {
   template <typename U>

@@ -145,7 +145,8 @@ void prepare_slot(ScanSlot& slot, SensorModel model, const OdometryConfig& odome
   // One return a firing at 10 Hz: 28 928 and 133 333. What an unknown model, dual returns or a
   // slower head need more, the slots take in their first turn and keep.
   constexpr std::size_t kVlp16Returns = 32'000, kHdl64eReturns = 140'000;
-  slot.scan.returns.resize(model == SensorModel::hdl64e ? kHdl64eReturns : kVlp16Returns);
+  // With a value: a resize() alone leaves Returns untouched.
+  slot.scan.returns.assign(model == SensorModel::hdl64e ? kHdl64eReturns : kVlp16Returns, Return{});
   slot.scan.clear();
   if (odometry.profile != Profile::standard) return;
   const int rings = model == SensorModel::hdl64e ? 64 : 16;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // what int64 nanoseconds can hold
-// Of a file, at a time: stdio's own 4 kB are three packets, and each such read a system call.
+// Of a file, at a time: stdio's own 4 kB are three packets, and each such read is a system call.
 constexpr std::size_t kReadBytes = 1U << 16U;
 
 struct CloseFile {
