@@ -95,9 +95,9 @@ Moments CellMap::moments_around(const CellIndex& i) const {
     const Neighbour& o = neighbours[k];
     const Moments& one = sums_[static_cast<std::size_t>(o.at)];
     const Eigen::Vector3f p = points_of(one);
-    const Eigen::Vector3f q = p + one[0] * Eigen::Vector3f(o.x_m, o.y_m, o.z_m);
+    const Eigen::Vector3f q = p + count_of(one) * Eigen::Vector3f(o.x_m, o.y_m, o.z_m);
     // The squares: o p' + p o' + count o o'
-    const Moments moved{one[0],
+    const Moments moved{count_of(one),
                         q.x(),
                         q.y(),
                         q.z(),
@@ -117,7 +117,7 @@ void CellMap::fit(Cell& cell) const {
   cell.refit_at = keyframe_ + (age < kYoung ? 1 : std::max(6U, age / 2));
   cell.information.setZero();
   const Moments sums = moments_around(cell.index);
-  const float count = sums[0];
+  const float count = count_of(sums);
   if (count < kMinCount) return;
   cell.mean_m = points_of(sums) / count;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
@@ -142,7 +142,7 @@ void CellMap::append_means(std::vector<Eigen::Vector3f>& points_m) const {
     if (slot.at == kNone) continue;
     const Moments& sums = sums_[static_cast<std::size_t>(slot.at)];
     const Eigen::Vector3d center = center_of(cells_[static_cast<std::size_t>(slot.at)].index);
-    points_m.emplace_back(center.cast<float>() + points_of(sums) / sums[0]);
+    points_m.emplace_back(center.cast<float>() + points_of(sums) / count_of(sums));
   }
 }
 

@@ -113,7 +113,7 @@ class CellMap {
     const float spread = reach.square_m2 > window_m2 ? window_m2 / (12.0F * reach.square_m2)
                                                      : 1.0F / 12.0F;  // if even
     const Eigen::Vector3f p = (point_m - center_of(place.index)).cast<float>();
-    const float kept = sums[0] >= config_.memory ? kept_ : 1.0F;
+    const float kept = count_of(sums) >= config_.memory ? kept_ : 1.0F;
     add_to(sums, kept, moments_of(p, spread, reach.outer_m2));
   }
 

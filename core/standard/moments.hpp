@@ -27,6 +27,7 @@ inline Symmetric outer(const Eigen::Vector3f& v) {
 /// summed at a time.
 using Moments = std::array<float, 1 + 3 + 6>;
 
+inline float count_of(const Moments& m) { return m[0]; }
 inline Eigen::Map<const Eigen::Vector3f> points_of(const Moments& m) {
   return Eigen::Map<const Eigen::Vector3f>(&m[1]);
 }
