@@ -6,9 +6,14 @@
 namespace lilo::standard {
 namespace {
 
-constexpr std::uint32_t kSide = 512;  // cells; 256 m
-constexpr std::uint32_t kOutside = kSide * kSide;
+constexpr std::int32_t kSide = 512;  // cells; 256 m
+constexpr std::int32_t kOutside = kSide * kSide;
 constexpr float kPerMetre = 2.0F;  // cells: as wide as a trunk or a post with its blur
+
+/// How many of `size` points in an outline's order.
+std::size_t count_in(Share share, std::size_t size) {
+  return Outline::before(share == Share::all ? Outline::kParts : 1, size);
+}
 
 }  // namespace
 
@@ -37,42 +42,59 @@ void Outline::assign(const std::vector<Feature>& features) {
   }
 }
 
-Footprint::Footprint(std::size_t most) : at_(most), taken_(kOutside / 64 + 1) { clear(); }
+void Plan::reserve(std::size_t size) {
+  for (std::vector<float>* part : {&x, &y, &s}) part->reserve(size);
+}
+
+void Plan::assign(const Outline& scan, const Eigen::Quaterniond& begin,
+                  const Eigen::Quaterniond& end, Share share) {
+  for (std::vector<float>* part : {&x, &y}) part->resize(scan.s.size());
+  s = scan.s;
+  // Within one scan the turn is small: the middle of it serves all.
+  const Eigen::Matrix<float, 2, 3> R =
+      (kPerMetre * begin.slerp(0.5, end).toRotationMatrix().topRows<2>()).cast<float>();
+  const float xx = R(0, 0), xy = R(0, 1), xz = R(0, 2);
+  const float yx = R(1, 0), yy = R(1, 1), yz = R(1, 2);
+  const std::size_t n = count_in(share, s.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    x[k] = xx * scan.x_m[k] + xy * scan.y_m[k] + xz * scan.z_m[k];
+    y[k] = yx * scan.x_m[k] + yy * scan.y_m[k] + yz * scan.z_m[k];
+  }
+}
+
+Footprint::Footprint(std::size_t most) : at_(most), taken_(kOutside + 1) { clear(); }
 
 void Footprint::clear() {
-  std::fill(taken_.begin(), taken_.end(), 0);
-  taken_.back() = 1;  // what is outside never counts
+  if (++now_ == 0) {
+    std::fill(taken_.begin(), taken_.end(), 0);
+    now_ = 1;
+  }
+  taken_.back() = now_;  // what is outside never counts
   cells_ = 0;
 }
 
-void Footprint::add(const Outline& scan, const Pose& T_begin, const Pose& T_end, Share share) {
-  constexpr auto kEdge = static_cast<float>(kSide);
-  // Within one scan the turn is small: the middle of it serves all, the way travelled each its own.
-  const Eigen::Matrix<float, 2, 3> R =
-      (kPerMetre * T_begin.rotation.slerp(0.5, T_end.rotation).toRotationMatrix().topRows<2>())
-          .cast<float>();
+void Footprint::add(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
+                    Share share) {
   const Eigen::Vector2f begin =
-      (kPerMetre * T_begin.translation_m.head<2>()).cast<float>().array() + 0.5F * kEdge;
-  const Eigen::Vector2f way =
-      (kPerMetre * (T_end.translation_m - T_begin.translation_m).head<2>()).cast<float>();
-  const float xx = R(0, 0), xy = R(0, 1), xz = R(0, 2), x0 = begin.x(), xs = way.x();
-  const float yx = R(1, 0), yy = R(1, 1), yz = R(1, 2), y0 = begin.y(), ys = way.y();
-  const std::size_t part = share == Share::all ? Outline::kParts : 1;
-  const std::size_t n = std::min(Outline::before(part, scan.s.size()), at_.size());
-  std::uint32_t* at = at_.data();
+      (kPerMetre * begin_m).cast<float>().array() + 0.5F * static_cast<float>(kSide);
+  const Eigen::Vector2f way = (kPerMetre * (end_m - begin_m)).cast<float>();
+  const float x0 = begin.x(), xs = way.x(), y0 = begin.y(), ys = way.y();
+  const std::size_t n = std::min(count_in(share, scan.s.size()), at_.size());
+  std::int32_t* at = at_.data();
   for (std::size_t k = 0; k < n; ++k) {
-    const float x = xx * scan.x_m[k] + xy * scan.y_m[k] + xz * scan.z_m[k] + x0 + scan.s[k] * xs;
-    const float y = yx * scan.x_m[k] + yy * scan.y_m[k] + yz * scan.z_m[k] + y0 + scan.s[k] * ys;
-    const bool inside = (x >= 0.0F) & (x < kEdge) & (y >= 0.0F) & (y < kEdge);
-    const auto cell = static_cast<std::int32_t>(y) * static_cast<std::int32_t>(kSide) +
-                      static_cast<std::int32_t>(x);
-    at[k] = inside ? static_cast<std::uint32_t>(cell) : kOutside;
+    const auto x = static_cast<std::int32_t>(scan.x[k] + x0 + scan.s[k] * xs);
+    const auto y = static_cast<std::int32_t>(scan.y[k] + y0 + scan.s[k] * ys);
+    const bool outside = ((x | y) & -kSide) != 0;  // negative, or too large
+    at[k] = outside ? kOutside : y * kSide + x;
   }
+  std::uint8_t* taken = taken_.data();
+  const std::uint8_t now = now_;
+  int cells = 0;
   for (std::size_t k = 0; k < n; ++k) {
-    const std::uint64_t bit = std::uint64_t{1} << (at[k] % 64);
-    cells_ += static_cast<int>((taken_[at[k] / 64] & bit) == 0);
-    taken_[at[k] / 64] |= bit;
+    cells += static_cast<int>(taken[at[k]] != now);
+    taken[at[k]] = now;
   }
+  cells_ += cells;
 }
 
 }  // namespace lilo::standard

@@ -27,6 +27,19 @@ struct Outline {
 /// tells.
 enum class Share : std::uint8_t { quarter, all };
 
+/// An outline turned to the axes of the odometry and seen from above, in cells from the sensor.
+/// Motions that differ in speed alone share it.
+struct Plan {
+  std::vector<float> x, y;
+  std::vector<float> s;  ///< as Feature::s
+
+  void reserve(std::size_t size);
+  /// Of a scan in which the sensor turned from `begin` to `end`. Other points than those of `share`
+  /// keep the places they had.
+  void assign(const Outline& scan, const Eigen::Quaterniond& begin, const Eigen::Quaterniond& end,
+              Share share = Share::all);
+};
+
 /// The area that what stands takes up on the ground, seen from above, when scans are laid over each
 /// other as a motion says: trunks and walls coincide under the true one and smear under any other.
 /// Needs neither a map nor a first guess, and hardly cares how many rings hit a thing.
@@ -34,20 +47,24 @@ enum class Share : std::uint8_t { quarter, all };
 /// Not thread-safe; no allocation after construction.
 class Footprint {
  public:
-  /// `most`: of one outline.
+  /// `most`: of one scan.
   explicit Footprint(std::size_t most);
 
   /// Square cells taken up by all scans added since clear().
   [[nodiscard]] int cells() const { return cells_; }
   void clear();
 
-  /// Adds one scan that lasted from `T_begin` to `T_end`, at constant velocity. What lies 128 m
+  /// Adds one scan that lasted from `begin_m` to `end_m`, at constant velocity. What lies 128 m
   /// from the origin along an axis is left out, and so are more than `most`.
-  void add(const Outline& scan, const Pose& T_begin, const Pose& T_end, Share share = Share::all);
+  void add(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
+           Share share = Share::all);
 
  private:
-  std::vector<std::uint32_t> at_;
-  std::vector<std::uint64_t> taken_;
+  std::vector<std::int32_t> at_;
+  // Of each cell, at which count of clear() it was last taken up. Nothing need be emptied so, and
+  // no cell waits for what was just written of its neighbour, as bits of one word would.
+  std::vector<std::uint8_t> taken_;
+  std::uint8_t now_ = 0;
   int cells_ = 0;
 };
 

@@ -15,7 +15,8 @@ constexpr std::array<double, 4> kSpeeds_mps{1.0, 2.0, 3.0, 4.0};
 }  // namespace
 
 MotionCheck::MotionCheck(std::size_t most_features) : footprint_(most_features) {
-  for (Seen& one : seen_) one.outline.reserve(most_features);
+  for (Seen& one : seen_) one.plan.reserve(most_features);
+  outline_.reserve(most_features);
 }
 
 void MotionCheck::clear() {
@@ -28,9 +29,10 @@ void MotionCheck::see(const std::vector<Feature>& features, const Pose& T_begin,
   newest_ = (newest_ + 1) % kScans;
   count_ = std::min(count_ + 1, kScans);
   Seen& now = seen_[newest_];
-  now.outline.assign(features);
-  now.T_begin = T_begin;
-  now.T_end = T_end;
+  outline_.assign(features);
+  now.plan.assign(outline_, T_begin.rotation, T_end.rotation);
+  now.begin_m = T_begin.translation_m.head<2>();
+  now.end_m = T_end.translation_m.head<2>();
   now.span_s = span_s;
   now.end_ns = end_ns;
 }
@@ -70,12 +72,8 @@ bool MotionCheck::is_refuted(const Eigen::Vector2d& axis) {
 void MotionCheck::add(const Seen& one, const Eigen::Vector2d& more_mps, Share share) {
   const Seen& now = seen_[newest_];
   const double ago_s = 1e-9 * static_cast<double>(now.end_ns - one.end_ns);
-  Pose begin = one.T_begin, end = one.T_end;
-  begin.translation_m -= now.T_end.translation_m;
-  end.translation_m -= now.T_end.translation_m;
-  begin.translation_m.head<2>() -= (ago_s + one.span_s) * more_mps;
-  end.translation_m.head<2>() -= ago_s * more_mps;
-  footprint_.add(one.outline, begin, end, share);
+  footprint_.add(one.plan, one.begin_m - now.end_m - (ago_s + one.span_s) * more_mps,
+                 one.end_m - now.end_m - ago_s * more_mps, share);
 }
 
 int MotionCheck::cells_under(const Eigen::Vector2d& more_mps, Share share) {

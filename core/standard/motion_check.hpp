@@ -34,8 +34,8 @@ class MotionCheck {
  private:
   static constexpr std::size_t kScans = 6;
   struct Seen {
-    Outline outline;
-    Pose T_begin, T_end;
+    Plan plan;
+    Eigen::Vector2d begin_m, end_m;
     double span_s = 0.0;
     std::int64_t end_ns = 0;
   };
@@ -52,6 +52,7 @@ class MotionCheck {
   std::size_t count_ = 0, newest_ = 0;
   int refuted_ = 0;  // times on end
   int speed_ = 0;    // which one is tried
+  Outline outline_;  // of the newest
   Footprint footprint_;
 };
 

@@ -68,6 +68,7 @@ Tracker::Tracker(const OdometryConfig& config)
     seen.for_map.reserve(for_map());
     seen.chosen.reserve(selection_.most());
     seen.outline.reserve(selection_.most());
+    seen.plan.reserve(selection_.most());
   }
 }
 

@@ -9,6 +9,7 @@
 #include "core/standard/unrest.hpp"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace lilo::standard {
@@ -38,6 +39,7 @@ class Tracker {
     std::size_t feature_count = 0;
     std::vector<Feature> for_map, chosen;
     Outline outline;  ///< of the chosen
+    Plan plan;        ///< of the outline, under the turn last looked at
   };
   /// What a scan brings to the map, kept until the next one has told where it ended.
   struct Held {
@@ -106,6 +108,9 @@ class Tracker {
   // The search for the motion at the start, in tracker_search.cpp.
   static bool differ(const Twist& a, const Twist& b, double mps, double radps);
   [[nodiscard]] int cells_as_tracked();
+  [[nodiscard]] std::pair<double, double> since_first(const Timing& timing) const;
+  void turn(const Eigen::Vector3d& angular_radps, Share share);
+  Look look_turned(const Twist& twist, Share share);
   Look look(const Twist& twist, Share share = Share::all);
   Look look_around(const Twist& about);
   [[nodiscard]] int cells_alone(Share share);

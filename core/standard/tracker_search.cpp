@@ -26,32 +26,57 @@ bool Tracker::differ(const Twist& a, const Twist& b, double mps, double radps) {
 int Tracker::cells_as_tracked() {
   footprint_.clear();
   for (std::size_t k = 0; k < seen_count_; ++k) {
-    footprint_.add(seen_[k].outline, seen_[k].T_begin, seen_[k].T_end);
+    Seen& one = seen_[k];
+    one.plan.assign(one.outline, one.T_begin.rotation, one.T_end.rotation);
+    footprint_.add(one.plan, one.T_begin.translation_m.head<2>(),
+                   one.T_end.translation_m.head<2>());
   }
   return footprint_.cells();
 }
 
 /// What they take up each for itself, all together.
 int Tracker::cells_alone(Share share) {
+  turn(Eigen::Vector3d::Zero(), share);
   int alone = 0;
   for (std::size_t k = 0; k < seen_count_; ++k) {
     footprint_.clear();
-    footprint_.add(seen_[k].outline, {}, {}, share);
+    footprint_.add(seen_[k].plan, {0.0, 0.0}, {0.0, 0.0}, share);
     alone += footprint_.cells();
   }
   return alone;
 }
 
-/// How compact they are when the sensor moved so since the first one began.
-Tracker::Look Tracker::look(const Twist& twist, Share share) {
+/// When a remembered scan began and ended, since the first one ended.
+std::pair<double, double> Tracker::since_first(const Timing& timing) const {
+  const double end_s = 1e-9 * static_cast<double>(timing.end_ns - seen_[0].timing.end_ns);
+  return {timing.motion_compensated ? end_s : end_s - span_of(timing), end_s};
+}
+
+/// Turns the remembered scans as though the sensor had turned so all the time.
+void Tracker::turn(const Eigen::Vector3d& angular_radps, Share share) {
+  for (std::size_t k = 0; k < seen_count_; ++k) {
+    Seen& one = seen_[k];
+    const auto [begin_s, end_s] = since_first(one.timing);
+    one.plan.assign(one.outline, so3_exp(begin_s * angular_radps), so3_exp(end_s * angular_radps),
+                    share);
+  }
+}
+
+/// How compact they are when the sensor moved so since the first one began; after turn() by as
+/// much.
+Tracker::Look Tracker::look_turned(const Twist& twist, Share share) {
   footprint_.clear();
   for (std::size_t k = 0; k < seen_count_; ++k) {
-    const Seen& one = seen_[k];
-    const double end_s = 1e-9 * static_cast<double>(one.timing.end_ns - seen_[0].timing.end_ns);
-    const double span_s = one.timing.motion_compensated ? 0.0 : span_of(one.timing);
-    footprint_.add(one.outline, moved({}, twist, end_s - span_s), moved({}, twist, end_s), share);
+    const auto [begin_s, end_s] = since_first(seen_[k].timing);
+    const Eigen::Vector2d along_mps = twist.linear_mps.head<2>();
+    footprint_.add(seen_[k].plan, begin_s * along_mps, end_s * along_mps, share);
   }
   return {twist, footprint_.cells()};
+}
+
+Tracker::Look Tracker::look(const Twist& twist, Share share) {
+  turn(twist.angular_radps, share);
+  return look_turned(twist, share);
 }
 
 Tracker::Look Tracker::look_around(const Twist& about) {
@@ -59,13 +84,14 @@ Tracker::Look Tracker::look_around(const Twist& about) {
   Look best = look(about);
   for (const double step : {0.5, 0.25, 0.125}) {
     const Twist middle = best.twist;
-    for (int turn = -1; turn <= 1; ++turn) {
+    for (int turn_steps = -1; turn_steps <= 1; ++turn_steps) {
+      Twist beside = middle;
+      beside.angular_radps.z() += kTurn * step * turn_steps;
+      turn(beside.angular_radps, Share::all);
       for (int x = -2; x <= 2; ++x) {
         for (int y = -2; y <= 2; ++y) {
-          Twist beside = middle;
-          beside.linear_mps += step * Eigen::Vector3d(x, y, 0.0);
-          beside.angular_radps.z() += kTurn * step * turn;
-          const Look other = look(beside);
+          beside.linear_mps = middle.linear_mps + step * Eigen::Vector3d(x, y, 0.0);
+          const Look other = look_turned(beside, Share::all);
           if (other.cells < best.cells) best = other;
         }
       }
@@ -86,10 +112,11 @@ void Tracker::look_everywhere() {
   constexpr int kSpeeds = 40, kHeadings = 16, kTurns = 10;
   looks_.clear();
   looks_.push_back(look({}, Share::quarter));
-  for (int turn = -kTurns; turn <= kTurns; ++turn) {
+  for (int turns = -kTurns; turns <= kTurns; ++turns) {
     Twist twist;
-    twist.angular_radps.z() = kStep_radps * turn;
-    if (turn != 0) looks_.push_back(look(twist, Share::quarter));
+    twist.angular_radps.z() = kStep_radps * turns;
+    turn(twist.angular_radps, Share::quarter);
+    if (turns != 0) looks_.push_back(look_turned(twist, Share::quarter));
     for (int speed = 1; speed <= kSpeeds; ++speed) {
       const double speed_mps = kStep_mps * speed;
       if (speed_mps * std::abs(twist.angular_radps.z()) > kMost_mps2) break;
@@ -97,7 +124,7 @@ void Tracker::look_everywhere() {
         const double heading_rad = 2.0 * std::numbers::pi * heading / kHeadings;
         twist.linear_mps = {speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad),
                             0.0};
-        looks_.push_back(look(twist, Share::quarter));
+        looks_.push_back(look_turned(twist, Share::quarter));
       }
     }
   }

@@ -49,8 +49,10 @@ int cells_under(const std::vector<std::vector<Feature>>& scans, const Twist& sup
   for (std::size_t k = 0; k < scans.size(); ++k) {
     const double begin_s = kSpan_s * static_cast<double>(k);
     outline.assign(scans[k]);
-    footprint.add(outline, moved({}, supposed, begin_s), moved({}, supposed, begin_s + kSpan_s),
-                  share);
+    const Pose begin = moved({}, supposed, begin_s), end = moved({}, supposed, begin_s + kSpan_s);
+    Plan plan;
+    plan.assign(outline, begin.rotation, end.rotation, share);
+    footprint.add(plan, begin.translation_m.head<2>(), end.translation_m.head<2>(), share);
   }
   return footprint.cells();
 }
@@ -108,6 +110,55 @@ TEST(Footprint, GroundTakesNoRoom) {
   EXPECT_EQ(cells_under({{ground}}, ahead(0.0)), 0);
   ground.kind = Kind::structure;
   EXPECT_EQ(cells_under({{ground}}, ahead(0.0)), 1);
+}
+
+Plan plan_of(const std::vector<Feature>& features) {
+  Outline outline;
+  outline.assign(features);
+  Plan plan;
+  const Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
+  plan.assign(outline, level, level);
+  return plan;
+}
+
+Feature post_at(float x_m, float y_m) {
+  Feature post{};
+  post.x_m = x_m;
+  post.y_m = y_m;
+  post.kind = Kind::structure;
+  return post;
+}
+
+TEST(Footprint, LeavesOutWhatIsFar) {
+  const Plan far = plan_of({post_at(129.0F, 0.0F), post_at(-129.0F, 0.0F), post_at(0.0F, 129.0F),
+                            post_at(0.0F, -129.0F), post_at(-1e9F, 1e9F)});
+  const Plan near = plan_of({post_at(127.0F, 0.0F), post_at(-127.0F, 0.0F), post_at(0.0F, 127.0F),
+                             post_at(0.0F, -127.0F)});
+  Footprint footprint(10);
+  footprint.add(far, {0.0, 0.0}, {0.0, 0.0});
+  EXPECT_EQ(footprint.cells(), 0);
+  footprint.add(near, {0.0, 0.0}, {0.0, 0.0});
+  EXPECT_EQ(footprint.cells(), 4);
+}
+
+TEST(Footprint, ForgetsWhatWasBeforeClear) {
+  const Plan post = plan_of({post_at(5.0F, 0.0F)}), other = plan_of({post_at(9.0F, 0.0F)});
+  Footprint footprint(10);
+  footprint.add(post, {0.0, 0.0}, {0.0, 0.0});
+  // Longer than any count of them goes on without beginning again.
+  for (int times = 0; times < 1000; ++times) {
+    footprint.clear();
+    footprint.add(other, {0.0, 0.0}, {0.0, 0.0});
+    ASSERT_EQ(footprint.cells(), 1);
+  }
+  for (int times = 0; times < 1000; ++times) {
+    footprint.clear();
+    ASSERT_EQ(footprint.cells(), 0);
+    if (times % 255 == 0) {
+      footprint.add(post, {0.0, 0.0}, {0.0, 0.0});
+      ASSERT_EQ(footprint.cells(), 1);
+    }
+  }
 }
 
 }  // namespace
