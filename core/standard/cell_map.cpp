@@ -147,7 +147,7 @@ void CellMap::append_means(std::vector<Eigen::Vector3f>& points_m) const {
 }
 
 void CellMap::clear() {
-  table_.clear();
+  for (const Cell& cell : cells_) table_.clear_from(table_.home_of(cell.index));
   cells_.clear();
   sums_.clear();
   free_.clear();

@@ -92,7 +92,13 @@ class CellTable {
     }
     slots_[hole] = Slot{};
   }
-  void clear() { slots_.assign(slots_.size(), Slot{}); }
+  /// Empties the slots from there to the next empty one. Done from the home of every cell there is,
+  /// in any order, it empties the table: what it leaves of a row of slots is the beginning, and a
+  /// cell that is still in it has its home there too. Where cells are few, that is far less than
+  /// the whole table.
+  void clear_from(std::size_t home) {
+    for (; slots_[home].at != kNone; home = after(home)) slots_[home] = Slot{};
+  }
 
   [[nodiscard]] const std::vector<Slot>& slots() const { return slots_; }
   [[nodiscard]] std::size_t after(std::size_t slot) const { return (slot + 1) & mask_; }

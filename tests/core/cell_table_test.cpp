@@ -51,6 +51,9 @@ TEST(CellTable, KnowsWhatAnOrderedMapKnows) {
     const auto [x, y, z] = index;
     EXPECT_EQ(table.find(table.home_of({x, y, z}), CellTable::tag_of({x, y, z})), at);
   }
+  for (const auto& [index, at] : truth) table.clear_from(home_of(at));
+  EXPECT_TRUE(std::all_of(table.slots().begin(), table.slots().end(),
+                          [](const CellTable::Slot& s) { return s.at == CellTable::kNone; }));
 }
 
 TEST(CellTable, ATagTellsTheWayFromCellToCell) {
