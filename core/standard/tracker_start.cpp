@@ -1,5 +1,7 @@
 #include "core/standard/tracker.hpp"
 
+#include <algorithm>
+
 /// How the tracker starts in motion.
 ///
 /// One scan alone tells no motion, and is bent by it. Two scans laid over each other mostly tell
@@ -97,18 +99,28 @@ Solution Tracker::try_start(const Start& start) {
 }
 
 /// Until the motion found is the motion assumed. What the first scan is straightened by too much
-/// the second lacks, and the other way round: half of the way each time, or they would never meet.
+/// the second lacks, and the other way round: half of the way at first, or they would never meet.
+/// From then on as far as the last step tells to go (Barzilai and Borwein, 1988): compensated
+/// returns need no straightening, and all of the way is right.
 Solution Tracker::refine(Start& start) {
-  constexpr double kSpeedEnough_mps = 0.02;
+  constexpr double kSpeedEnough_mps = 0.01;
   constexpr int kMaxRounds = 15;
+  double part = 0.5;
+  Eigen::Vector3d step_mps, last_lack_mps;
   Solution solution = try_start(start);
   for (int round = 0; round < kMaxRounds; ++round) {
     const Twist found = twist_between({}, solution.trajectory.end(), solution.trajectory.span_s);
-    const double change_mps = (found.linear_mps - start.twist.linear_mps).norm();
-    start.twist.linear_mps = 0.5 * (start.twist.linear_mps + found.linear_mps);
-    start.twist.angular_radps = 0.5 * (start.twist.angular_radps + found.angular_radps);
+    const Eigen::Vector3d lack_mps = found.linear_mps - start.twist.linear_mps;
+    if (lack_mps.norm() < kSpeedEnough_mps) break;
+    if (round > 0) {
+      const Eigen::Vector3d less_mps = last_lack_mps - lack_mps;
+      part = std::clamp(step_mps.dot(less_mps) / less_mps.squaredNorm(), 0.25, 1.0);
+    }
+    step_mps = part * lack_mps;
+    last_lack_mps = lack_mps;
+    start.twist.linear_mps += step_mps;
+    start.twist.angular_radps += part * (found.angular_radps - start.twist.angular_radps);
     solution = try_start(start);
-    if (change_mps < kSpeedEnough_mps) break;
   }
   return solution;
 }
