@@ -96,6 +96,7 @@ class Tracker {
   static void believe(const Start& start, Prior& prior);
   Solution refine(Start& start);
   Solution start();
+  static bool is_elsewhere(const Twist& twist, const Twist& tracked);
   [[nodiscard]] Twist twist_so_far() const;
   Start best_start(const Twist& tracked);
   void rehearse(Start start);
@@ -112,7 +113,7 @@ class Tracker {
   void turn(const Eigen::Vector3d& angular_radps, Share share);
   Look look_turned(const Twist& twist, Share share);
   Look look(const Twist& twist, Share share = Share::all);
-  Look look_around(const Twist& about);
+  Look look_around(const Twist& about, Share share);
   [[nodiscard]] int cells_alone(Share share);
   /// Whether what was seen speaks for the motion with `cells` and against the other.
   static bool speaks_for(int cells_alone, int cells, int other_cells, double sigmas);

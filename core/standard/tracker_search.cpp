@@ -79,19 +79,19 @@ Tracker::Look Tracker::look(const Twist& twist, Share share) {
   return look_turned(twist, share);
 }
 
-Tracker::Look Tracker::look_around(const Twist& about) {
+Tracker::Look Tracker::look_around(const Twist& about, Share share) {
   constexpr double kTurn = 0.2;  // rad/s for each m/s: far things feel both alike
-  Look best = look(about);
+  Look best = look(about, share);
   for (const double step : {0.5, 0.25, 0.125}) {
     const Twist middle = best.twist;
     for (int turn_steps = -1; turn_steps <= 1; ++turn_steps) {
       Twist beside = middle;
       beside.angular_radps.z() += kTurn * step * turn_steps;
-      turn(beside.angular_radps, Share::all);
+      turn(beside.angular_radps, share);
       for (int x = -2; x <= 2; ++x) {
         for (int y = -2; y <= 2; ++y) {
           beside.linear_mps = middle.linear_mps + step * Eigen::Vector3d(x, y, 0.0);
-          const Look other = look_turned(beside, Share::all);
+          const Look other = look_turned(beside, share);
           if (other.cells < best.cells) best = other;
         }
       }
@@ -163,7 +163,7 @@ Tracker::Start Tracker::most_compact() {
   });
   if (!speaks_for(alone, best.cells, standing.cells, kClearly)) return start;
   start.moves = true;
-  start.twist = look_around(best.twist).twist;
+  start.twist = look_around(best.twist, Share::all).twist;
   start.believed_mps = start.twist.linear_mps;
   start.doubt_mps = kMoving_mps;
   return start;

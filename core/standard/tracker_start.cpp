@@ -11,9 +11,8 @@
 namespace lilo::standard {
 namespace {
 
-constexpr double kNearer_mps = 0.25;                    // to the motion tracked so far
-constexpr double kApart_mps = 0.5, kApart_radps = 0.1;  // not what was tracked
-constexpr double kProbably = 1.0;                       // sigmas
+constexpr double kNearer_mps = 0.25;  // to the motion tracked so far
+constexpr double kProbably = 1.0;     // sigmas
 
 }  // namespace
 
@@ -163,6 +162,12 @@ void Tracker::rehearse(Start start) {
   }
 }
 
+/// Whether a motion is not the one tracked.
+bool Tracker::is_elsewhere(const Twist& twist, const Twist& tracked) {
+  constexpr double kApart_mps = 0.5, kApart_radps = 0.1;
+  return differ(twist, tracked, kApart_mps, kApart_radps);
+}
+
 /// The constant motion nearest to the track so far.
 Twist Tracker::twist_so_far() const {
   const Seen& newest = seen_[seen_count_ - 1];
@@ -175,7 +180,9 @@ Twist Tracker::twist_so_far() const {
 Tracker::Start Tracker::best_start(const Twist& tracked) {
   if (start_is_clear_ && status_ != TrackingStatus::lost) {
     Start start;
-    start.twist = look_around(tracked).twist;
+    // What lies elsewhere with all of what was seen does, but for chance, with a quarter of it too.
+    start.twist = look_around(tracked, Share::quarter).twist;
+    if (is_elsewhere(start.twist, tracked)) start.twist = look_around(tracked, Share::all).twist;
     start.believed_mps = start.twist.linear_mps;
     start.doubt_mps = kNearer_mps;
     return start;
@@ -191,7 +198,7 @@ void Tracker::doubt_standing() {
   constexpr std::size_t kEnough = 4;  // scans
   if (seen_count_ < kEnough) return;
   const Twist tracked = twist_so_far();
-  if (differ(tracked, assumed_twist_, kApart_mps, kApart_radps)) {
+  if (is_elsewhere(assumed_twist_, tracked)) {
     rehearse({tracked, tracked.linear_mps, kNearer_mps});
   }
   seen_count_ = 0;
@@ -202,7 +209,7 @@ void Tracker::doubt_standing() {
 void Tracker::decide() {
   const Twist tracked = twist_so_far();
   const Start other = best_start(tracked);
-  if (differ(other.twist, tracked, kApart_mps, kApart_radps) &&
+  if (is_elsewhere(other.twist, tracked) &&
       speaks_for(cells_alone(Share::all), look(other.twist).cells, cells_as_tracked(), kProbably)) {
     rehearse(other);
   }
