@@ -105,14 +105,14 @@ Solution Tracker::refine(Start& start) {
   constexpr double kSpeedEnough_mps = 0.01;
   constexpr int kMaxRounds = 15;
   double part = 0.5;
-  Eigen::Vector3d step_mps, last_lack_mps;
+  Eigen::Vector3d step_mps = Eigen::Vector3d::Zero(), last_lack_mps = step_mps;
   Solution solution = try_start(start);
   for (int round = 0; round < kMaxRounds; ++round) {
     const Twist found = twist_between({}, solution.trajectory.end(), solution.trajectory.span_s);
     const Eigen::Vector3d lack_mps = found.linear_mps - start.twist.linear_mps;
     if (lack_mps.norm() < kSpeedEnough_mps) break;
-    if (round > 0) {
-      const Eigen::Vector3d less_mps = last_lack_mps - lack_mps;
+    const Eigen::Vector3d less_mps = last_lack_mps - lack_mps;
+    if (round > 0 && !less_mps.isZero(0.0)) {
       part = std::clamp(step_mps.dot(less_mps) / less_mps.squaredNorm(), 0.25, 1.0);
     }
     step_mps = part * lack_mps;
