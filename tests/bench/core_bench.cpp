@@ -5,6 +5,7 @@
 #include "core/paper/registration.hpp"
 #include "core/paper/segmentation.hpp"
 #include "core/standard/feature_image.hpp"
+#include "core/standard/footprint.hpp"
 #include "core/standard/selection.hpp"
 #include "core/standard/solver.hpp"
 
@@ -80,6 +81,27 @@ void selection(benchmark::State& state) {
   const auto& all = image.build(scan);
   standard::Selection chosen(1200, 1500);
   for (auto _ : state) benchmark::DoNotOptimize(chosen.choose(all).size());
+}
+
+// One turn and the 25 speeds that share it, as in the search for the motion at the start.
+void footprint(benchmark::State& state) {
+  const Scan scan = hall_scan(rings_of(state));
+  standard::FeatureImage image(1024, {});
+  standard::Selection chosen(1200, 1500);
+  standard::Outline outline;
+  outline.assign(chosen.choose(image.build(scan)));
+  standard::Plan plan;
+  standard::Footprint laid(chosen.most());
+  const Eigen::Quaterniond ahead = Eigen::Quaterniond::Identity();
+  for (auto _ : state) {
+    plan.assign(outline, ahead, ahead);
+    for (int speed = 0; speed < 25; ++speed) {
+      laid.clear();
+      laid.add(plan, {0.0, 0.0}, {0.1 * speed, 0.0});
+      benchmark::DoNotOptimize(laid.cells());
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * 25 * static_cast<std::int64_t>(outline.s.size()));
 }
 
 standard::CellMap empty_map(float cell_m) {
@@ -194,6 +216,7 @@ void paper_correspondences(benchmark::State& state) {
 #define LILO_KERNEL(name) BENCHMARK(name)->Arg(16)->Arg(64)->Unit(benchmark::kMicrosecond)
 LILO_KERNEL(image_features);
 LILO_KERNEL(selection);
+LILO_KERNEL(footprint);
 LILO_KERNEL(cell_map_insert);
 LILO_KERNEL(cell_map_find);
 LILO_KERNEL(solver_round);
