@@ -1,7 +1,6 @@
 #include "core/standard/footprint.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace lilo::standard {
 namespace {

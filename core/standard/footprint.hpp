@@ -1,7 +1,8 @@
 #pragma once
 
-#include "core/estimate.hpp"
 #include "core/standard/feature_image.hpp"
+
+#include <Eigen/Geometry>
 
 #include <cstdint>
 #include <vector>
@@ -54,8 +55,8 @@ class Footprint {
   [[nodiscard]] int cells() const { return cells_; }
   void clear();
 
-  /// Adds one scan that lasted from `begin_m` to `end_m`, at constant velocity. What lies 128 m
-  /// from the origin along an axis is left out, and so are more than `most`.
+  /// Adds one scan that lasted from `begin_m` to `end_m`, at constant velocity. What lies 128 m, to
+  /// a cell, from the origin along an axis is left out, and so are more than `most`.
   void add(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
            Share share = Share::all);
 
