@@ -137,15 +137,6 @@ void CellMap::fit(Cell& cell) const {
   }
 }
 
-void CellMap::append_means(std::vector<Eigen::Vector3f>& points_m) const {
-  for (const CellTable::Slot& slot : table_.slots()) {
-    if (slot.at == kNone) continue;
-    const Moments& sums = sums_[static_cast<std::size_t>(slot.at)];
-    const Eigen::Vector3d center = center_of(cells_[static_cast<std::size_t>(slot.at)].index);
-    points_m.emplace_back(center.cast<float>() + points_of(sums) / count_of(sums));
-  }
-}
-
 void CellMap::clear() {
   for (const Cell& cell : cells_) table_.clear_from(table_.home_of(cell.index));
   cells_.clear();

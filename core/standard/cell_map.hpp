@@ -126,8 +126,16 @@ class CellMap {
   /// share of the table, so that no single scan pays for it.
   void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
 
-  /// Appends the mean of every cell's own points (m), in no particular order.
-  void append_means(std::vector<Eigen::Vector3f>& points_m) const;
+  /// Calls `visit` with the mean of every cell's own points (m), in no particular order.
+  template <typename Visit>
+  void for_each_mean(const Visit& visit) const {
+    for (const CellTable::Slot& slot : table_.slots()) {
+      if (slot.at == kNone) continue;
+      const auto at = static_cast<std::size_t>(slot.at);
+      const Eigen::Vector3d own_m = (points_of(sums_[at]) / count_of(sums_[at])).cast<double>();
+      visit(center_of(cells_[at].index) + own_m);
+    }
+  }
 
   [[nodiscard]] int size() const { return used_; }
   [[nodiscard]] std::uint64_t refused() const { return refused_; }

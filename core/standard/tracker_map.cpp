@@ -86,9 +86,11 @@ std::vector<Eigen::Vector3f> Tracker::map_points() const {
   std::vector<Eigen::Vector3f> points_m;
   points_m.reserve(static_cast<std::size_t>(maps_.ground_fine.size()) +
                    static_cast<std::size_t>(maps_.structure_fine.size()));
-  maps_.ground_fine.append_means(points_m);
-  maps_.structure_fine.append_means(points_m);
-  for (Eigen::Vector3f& p : points_m) p = (T_odom_start_ * p.cast<double>()).cast<float>();
+  const auto append = [&](const Eigen::Vector3d& mean_m) {
+    points_m.emplace_back((T_odom_start_ * mean_m).cast<float>());
+  };
+  maps_.ground_fine.for_each_mean(append);
+  maps_.structure_fine.for_each_mean(append);
   return points_m;
 }
 

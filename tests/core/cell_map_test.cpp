@@ -171,14 +171,14 @@ TEST_F(Filled, GivesTheMeanOfEveryCell) {
   map_.insert({0.3, 0.1, 0.1}, no_reach_);
   map_.insert({-1000.2, 7.4, 3.1}, no_reach_);
   std::vector<Eigen::Vector3f> means;
-  map_.append_means(means);
+  map_.for_each_mean([&](const Eigen::Vector3d& mean_m) { means.push_back(mean_m.cast<float>()); });
   ASSERT_EQ(means.size(), 2U);
   if (means[0].x() < 0.0F) std::swap(means[0], means[1]);
   EXPECT_LT((means[0] - Eigen::Vector3f(0.2F, 0.1F, 0.1F)).norm(), 1e-5F);
   EXPECT_LT((means[1] - Eigen::Vector3f(-1000.2F, 7.4F, 3.1F)).norm(), 2e-4F);
   map_.clear();
   means.clear();
-  map_.append_means(means);
+  map_.for_each_mean([&](const Eigen::Vector3d& mean_m) { means.push_back(mean_m.cast<float>()); });
   EXPECT_TRUE(means.empty());
 }
 
