@@ -7,7 +7,25 @@ namespace {
 
 constexpr std::int32_t kSide = 512;  // cells; 256 m
 constexpr std::int32_t kOutside = kSide * kSide;
-constexpr float kPerMetre = 2.0F;  // cells: as wide as a trunk or a post with its blur
+constexpr float kPerMetre = Footprint::kPerMetre;
+
+std::int32_t cell_at(float x, float y) {
+  const auto column = static_cast<std::int32_t>(x), row = static_cast<std::int32_t>(y);
+  const bool outside = ((column | row) & -kSide) != 0;  // negative, or too large
+  return outside ? kOutside : row * kSide + column;
+}
+
+/// From where to where a scan was taken, in cells from the grid's corner.
+struct Way {
+  Way(const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m)
+      : begin((kPerMetre * begin_m).cast<float>().array() + 0.5F * static_cast<float>(kSide)),
+        to_end((kPerMetre * (end_m - begin_m)).cast<float>()) {}
+  [[nodiscard]] std::int32_t cell_of(const Plan& scan, std::size_t k) const {
+    return cell_at(scan.x[k] + begin.x() + scan.s[k] * to_end.x(),
+                   scan.y[k] + begin.y() + scan.s[k] * to_end.y());
+  }
+  Eigen::Vector2f begin, to_end;
+};
 
 /// How many of `size` points in an outline's order.
 std::size_t count_in(Share share, std::size_t size) {
@@ -74,18 +92,10 @@ void Footprint::clear() {
 
 void Footprint::add(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
                     Share share) {
-  const Eigen::Vector2f begin =
-      (kPerMetre * begin_m).cast<float>().array() + 0.5F * static_cast<float>(kSide);
-  const Eigen::Vector2f way = (kPerMetre * (end_m - begin_m)).cast<float>();
-  const float x0 = begin.x(), xs = way.x(), y0 = begin.y(), ys = way.y();
+  const Way way(begin_m, end_m);
   const std::size_t n = std::min(count_in(share, scan.s.size()), at_.size());
   std::int32_t* at = at_.data();
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto x = static_cast<std::int32_t>(scan.x[k] + x0 + scan.s[k] * xs);
-    const auto y = static_cast<std::int32_t>(scan.y[k] + y0 + scan.s[k] * ys);
-    const bool outside = ((x | y) & -kSide) != 0;  // negative, or too large
-    at[k] = outside ? kOutside : y * kSide + x;
-  }
+  for (std::size_t k = 0; k < n; ++k) at[k] = way.cell_of(scan, k);
   std::uint8_t* taken = taken_.data();
   const std::uint8_t now = now_;
   int cells = 0;
@@ -94,6 +104,39 @@ void Footprint::add(const Plan& scan, const Eigen::Vector2d& begin_m, const Eige
     taken[at[k]] = now;
   }
   cells_ += cells;
+}
+
+void Footprint::add(const Eigen::Vector2d& point_m, int around) {
+  const Eigen::Vector2f from = Way(point_m, point_m).begin;
+  for (int dy = -around; dy <= around; ++dy) {
+    for (int dx = -around; dx <= around; ++dx) {
+      std::uint8_t& taken = taken_[static_cast<std::size_t>(
+          cell_at(from.x() + static_cast<float>(dx), from.y() + static_cast<float>(dy)))];
+      cells_ += static_cast<int>(taken != now_);
+      taken = now_;
+    }
+  }
+}
+
+void Footprint::aim(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
+                    Share share, int margin) {
+  const Way way(begin_m, end_m);
+  const std::size_t n = std::min(count_in(share, scan.s.size()), at_.size());
+  aimed_ = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::int32_t at = way.cell_of(scan, k);
+    const std::int32_t x = at % kSide, y = at / kSide;
+    at_[aimed_] = at;
+    aimed_ += std::min(x, y) >= margin && std::max(x, y) < kSide - margin ? 1 : 0;
+  }
+}
+
+int Footprint::returns_on(int x, int y) const {
+  const std::uint8_t* taken = taken_.data() + y * kSide + x;
+  const std::uint8_t now = now_;
+  int returns = 0;
+  for (std::size_t k = 0; k < aimed_; ++k) returns += static_cast<int>(taken[at_[k]] == now);
+  return returns;
 }
 
 }  // namespace lilo::standard

@@ -48,6 +48,8 @@ struct Plan {
 /// Not thread-safe; no allocation after construction.
 class Footprint {
  public:
+  static constexpr int kPerMetre = 2;  ///< cells: as wide as a trunk or a post with its blur
+
   /// `most`: of one scan.
   explicit Footprint(std::size_t most);
 
@@ -59,9 +61,17 @@ class Footprint {
   /// a cell, from the origin along an axis is left out, and so are more than `most`.
   void add(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
            Share share = Share::all);
+  /// Adds one point. Returns within `around` cells of its own fall on it as well.
+  void add(const Eigen::Vector2d& point_m, int around);
+  /// Remembers where the returns of a scan fall, but for those within `margin` cells of the end.
+  void aim(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
+           Share share, int margin);
+  /// How many of those fall on what was added, moved by so many cells, `margin` at most.
+  [[nodiscard]] int returns_on(int x, int y) const;
 
  private:
   std::vector<std::int32_t> at_;
+  std::size_t aimed_ = 0;  // how many of them aim() remembered
   // Of each cell, at which count of clear() it was last taken up. Nothing need be emptied so, and
   // no cell waits for what was just written of its neighbour, as bits of one word would.
   std::vector<std::uint8_t> taken_;

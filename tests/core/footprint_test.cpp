@@ -77,6 +77,26 @@ TEST(Footprint, IsLeastUnderTheTrueSpeed) {
   }
 }
 
+TEST(Footprint, CountsReturnsOnWhatWasAdded) {
+  Plan plan;
+  plan.x = {0.5F, 20.5F, 240.5F, -600.5F};  // cells: two inside, one near the end, one beyond it
+  plan.y = {0.5F, -9.5F, 0.5F, 0.5F};
+  plan.s = {0.0F, 0.0F, 0.0F, 0.0F};
+  Footprint map(100);
+  map.aim(plan, {0.0, 0.0}, {0.0, 0.0}, Share::all, 20);
+  EXPECT_EQ(map.returns_on(0, 0), 0) << "nothing was added";
+  map.add({10.25, -4.75}, 1);  // cell 20.5, -9.5
+  map.add({120.25, 0.25}, 0);
+  EXPECT_EQ(map.returns_on(0, 0), 1);
+  EXPECT_EQ(map.returns_on(1, -1), 1) << "as far around as was asked for";
+  EXPECT_EQ(map.returns_on(2, 0), 0);
+  EXPECT_EQ(map.returns_on(20, -10), 1) << "the other return";
+  map.aim(plan, {0.0, 0.0}, {0.0, 0.0}, Share::all, 1);
+  EXPECT_EQ(map.returns_on(0, 0), 2) << "with less of a margin";
+  map.clear();
+  EXPECT_EQ(map.returns_on(0, 0), 0);
+}
+
 TEST(Outline, BeginsWithEveryFourth) {
   std::vector<Feature> features(20);
   std::vector<float> all_m;
