@@ -171,6 +171,13 @@ Solver::Equations Solver::data_equations(double span_s, Matrix6d& data_informati
   return all;
 }
 
+Solution Solver::unmoved(const Prior& prior) const {
+  Solution solution;
+  solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, config_.segments,
+                         Unknowns::Zero(kKnotSize * (config_.segments + 1))};
+  return solution;
+}
+
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior) {
   // Far from the solution a part of the features shows the way as well as all of them.
   constexpr std::size_t kCoarseStride = 4;
@@ -179,10 +186,8 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   // Weights and cells follow each step, so that the next would be about a quarter of it.
   constexpr double kFurther = 1.2;
   std::size_t stride = kCoarseStride;
-  Solution solution;
-  const int n = kKnotSize * (config_.segments + 1);
-  solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, config_.segments,
-                         Unknowns::Zero(n)};
+  Solution solution = unmoved(prior);
+  const auto n = solution.trajectory.knots.rows();
   last_.assign(features.size(), {});
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, solution);

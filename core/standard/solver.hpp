@@ -70,6 +70,8 @@ class Solver {
   Solver(const SolverConfig& config, std::size_t most_features) : config_(config) {
     last_.reserve(most_features);
   }
+  /// The prediction, as though nothing had matched.
+  [[nodiscard]] Solution unmoved(const Prior& prior) const;
   Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior);
 
  private:

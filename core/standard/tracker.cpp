@@ -61,6 +61,7 @@ Tracker::Tracker(const OdometryConfig& config)
       unrest_(usual_density(config.standard)),
       footprint_(selection_.most()),
       motion_check_(selection_.most()),
+      relocalizer_(selection_.most()),
       information_(first_information()) {
   held_.features.reserve(for_map());
   looks_.reserve(kMostLooks);
@@ -80,8 +81,9 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
   const Prior prior = predict(timing_);
   const TrackingStatus last_status = status_;
   const EndByUnrest last_end_by_unrest = solution_.end_by_unrest;
-  solution_ = scan_count_ == 1 ? start() : solver_.solve(chosen, maps_, prior);
+  solution_ = solve(scan, chosen, prior);
   status_ = status_of(scan, solution_, chosen.size());
+  if (status_ != TrackingStatus::lost) last_aligned_ns_ = timing_.end_ns;
   learn_unrest(last_status, last_end_by_unrest);
   accept(timing_, prior, solution_);
   if (seen_count_ > 1 && status_ != TrackingStatus::lost) {
@@ -96,6 +98,12 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
   Estimate result = estimate(scan, solution_, chosen);
   hook(Stage::align);
   return result;
+}
+
+Solution Tracker::solve(const Scan& scan, const std::vector<Feature>& chosen, const Prior& prior) {
+  if (scan_count_ == 1) return start();
+  if (chosen.size() >= kMinFeatures && may_be_elsewhere()) return relocalize(scan, chosen, prior);
+  return solver_.solve(chosen, maps_, prior);
 }
 
 void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {

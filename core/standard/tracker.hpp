@@ -4,6 +4,7 @@
 #include "core/standard/drift.hpp"
 #include "core/standard/footprint.hpp"
 #include "core/standard/motion_check.hpp"
+#include "core/standard/relocalizer.hpp"
 #include "core/standard/selection.hpp"
 #include "core/standard/solver.hpp"
 #include "core/standard/unrest.hpp"
@@ -26,8 +27,9 @@ class Tracker {
 
  private:
   static constexpr std::size_t kScansToDecide = 6;
-  static constexpr int kYoung = 5;   // keyframes of a map that may know too little
-  static constexpr int kGrown = 15;  // keyframes of a map that must know where it is
+  static constexpr int kYoung = 5;           // keyframes of a map that may know too little
+  static constexpr int kGrown = 15;          // keyframes of a map that must know where it is
+  static constexpr double kUnseen_s = 0.35;  // for so long a prediction is good to half a cell
   struct Timing {
     std::int64_t start_ns = 0, end_ns = 0;
     bool motion_compensated = false;
@@ -67,6 +69,7 @@ class Tracker {
   static double span_of(const Timing& timing);
   static bool follows(const Timing& scan, std::int64_t end_ns);
   [[nodiscard]] Prior predict(const Timing& scan) const;
+  Solution solve(const Scan& scan, const std::vector<Feature>& chosen, const Prior& prior);
   void learn_unrest(TrackingStatus last_status, const EndByUnrest& last_end_by_unrest);
   void accept(const Timing& scan, const Prior& prior, const Solution& solution);
   bool is_refuted(const std::vector<Feature>& chosen);
@@ -76,6 +79,14 @@ class Tracker {
                                   const std::vector<Feature>& chosen) const;
   [[nodiscard]] Matrix6d alignment_covariance() const;
   [[nodiscard]] Matrix6d sensor_covariance() const;
+
+  // The way back into the map, in tracker_relocalization.cpp.
+  [[nodiscard]] double unseen_s() const;
+  [[nodiscard]] bool may_be_elsewhere() const;
+  Solution relocalize(const Scan& scan, const std::vector<Feature>& chosen, const Prior& prior);
+  void attempt_everywhere(const std::vector<Feature>& chosen, const Prior& prior);
+  Solution solve_from(const Pose& T_end, const std::vector<Feature>& chosen, Prior prior);
+  [[nodiscard]] bool stands_out(const Solution& best) const;
 
   // The map, in tracker_map.cpp.
   void grow_map(const Timing& scan, const std::vector<Feature>& features, const Solution& solution);
@@ -104,6 +115,7 @@ class Tracker {
   void doubt_standing();
   static void note_track(Seen& seen, const Pose& T_begin, const Pose& T_end);
   void note_prediction(Seen& seen) const;
+  [[nodiscard]] bool is_start_vain(std::size_t feature_count) const;
   void remember(const std::vector<Feature>& all, const std::vector<Feature>& chosen);
 
   // The search for the motion at the start, in tracker_search.cpp.
@@ -134,6 +146,9 @@ class Tracker {
   Unrest unrest_;
   Footprint footprint_;
   MotionCheck motion_check_;
+  Relocalizer relocalizer_;
+  std::array<Solution, Relocalizer::kMostPlaces + 1> attempts_;  // to find the place again
+  std::size_t attempt_count_ = 0;
 
   Pose T_odom_start_;  // where the map in force was begun; all other poses here are from there
   Pose T_odom_sensor_;
@@ -144,6 +159,8 @@ class Tracker {
   KnotInformation information_;  // of the pose and its rate at the last scan's end
   Pose T_odom_keyframe_;
   std::int64_t last_end_ns_ = 0;
+  std::int64_t last_aligned_ns_ = 0;  // end of the last scan that was not lost
+  std::int64_t drawn_at_ns_ = 0;      // the same, when the relocalizer was given the map
   int scan_count_ = 0;
   TrackingStatus status_ = TrackingStatus::initializing;
   std::array<Seen, kScansToDecide> seen_;  // the first scans, until the motion is known

@@ -1,6 +1,7 @@
 #include "core/standard/tracker.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 /// How the tracker starts in motion.
 ///
@@ -16,12 +17,18 @@ constexpr double kProbably = 1.0;     // sigmas
 
 }  // namespace
 
+/// Whether the scans so far are no ground to start from.
+bool Tracker::is_start_vain(std::size_t feature_count) const {
+  if (scan_count_ == 0 || seen_count_ == 0) return false;
+  // Half of a turn: packets were lost, or the recording began in the middle of it.
+  if (scan_count_ == 1 && feature_count > 2 * seen_[0].feature_count) return true;
+  // Long ago: only who stood may be supposed to have gone on as it did.
+  const double unseen_s = 1e-9 * std::abs(static_cast<double>(timing_.start_ns - last_end_ns_));
+  return unseen_s > kUnseen_s && (scan_count_ == 1 || !stands_);
+}
+
 void Tracker::remember(const std::vector<Feature>& all, const std::vector<Feature>& chosen) {
-  // A first scan that saw less than half of the second is no ground to start from: packets were
-  // lost, or the recording began in the middle of a turn.
-  if (scan_count_ == 1 && all.size() > 2 * seen_[0].feature_count) {
-    start_anew();
-  }
+  if (is_start_vain(all.size())) start_anew();
   if (scan_count_ >= 2 && seen_count_ == 0) return;
   Seen& seen = seen_[seen_count_++];
   seen.timing = timing_;
