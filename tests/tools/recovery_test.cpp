@@ -167,6 +167,93 @@ const Drive kDrives[] = {
 INSTANTIATE_TEST_SUITE_P(Simulated, Recovery, testing::ValuesIn(kDrives),
                          [](const auto& test) { return std::string(test.param.name); });
 
+/// Poses against truth, each session by itself, when some scans are missing every five seconds.
+struct Gaps {
+  int count = 0;
+  int found_at_once = 0;  ///< the first scan after it is tracked, or degraded
+  Poses tracked;
+};
+Gaps run_with_gaps(const Recording& recording, std::size_t scans_missing) {
+  constexpr std::size_t kEvery = 50;
+  Odometry odometry{OdometryConfig{}};
+  Gaps out;
+  std::optional<Pose> T_world_odom;
+  std::uint32_t session = 0;
+  for (std::size_t k = 0; k < recording.scans.size(); ++k) {
+    const std::size_t since = k % kEvery;
+    if (k >= kEvery && since < scans_missing) continue;
+    const Estimate e = odometry.process(recording.scans[k]);
+    if (e.restarts != session) T_world_odom.reset();
+    session = e.restarts;
+    const bool aligned =
+        e.status == TrackingStatus::tracking || e.status == TrackingStatus::degraded;
+    if (k >= kEvery && since == scans_missing) {
+      ++out.count;
+      out.found_at_once += aligned ? 1 : 0;
+    }
+    if (e.status != TrackingStatus::tracking) continue;
+    if (!T_world_odom) T_world_odom = recording.truth[k] * e.T_odom_sensor.inverse();
+    out.tracked.add(recording.truth[k].inverse() * *T_world_odom * e.T_odom_sensor);
+  }
+  return out;
+}
+
+// After a second and a half at 8 m/s, in bends as well, the prediction is metres and tens of
+// degrees off; the sensor is where the map knows it nevertheless.
+TEST(Gap, OfASecondAndAHalfInAStreetIsBridged) {
+  for (const std::uint64_t seed : {91U, 106U}) {
+    const Recording recording = recording_of(
+        "street", {.speed_mps = 8.0, .duration_s = 25.0, .start_in_motion = true}, seed);
+    const Gaps o = run_with_gaps(recording, 15);
+    std::printf("seed %d: %d of %d found at once; %d poses tracked within %.3f m, %.2f deg\n",
+                static_cast<int>(seed), o.found_at_once, o.count, o.tracked.count,
+                o.tracked.worst_m, o.tracked.worst_rad / kDeg);
+    EXPECT_EQ(o.count, 4);
+    EXPECT_GE(o.found_at_once, 3);
+    EXPECT_LT(o.tracked.worst_m, 0.5);
+    EXPECT_LT(o.tracked.worst_rad, 2.0 * kDeg);
+  }
+}
+
+// Four seconds are too long to be sure of anything but that no wrong place is called `tracking`.
+TEST(Gap, OfFourSecondsNeverEndsAtAWrongPlace) {
+  const Recording recording =
+      recording_of("street", {.speed_mps = 12.0, .duration_s = 25.0, .start_in_motion = true}, 91);
+  const Gaps o = run_with_gaps(recording, 40);
+  std::printf("%d of %d found at once; %d poses tracked within %.3f m, %.2f deg\n", o.found_at_once,
+              o.count, o.tracked.count, o.tracked.worst_m, o.tracked.worst_rad / kDeg);
+  EXPECT_LT(o.tracked.worst_m, 1.0);
+  EXPECT_LT(o.tracked.worst_rad, 3.0 * kDeg);
+}
+
+// The sensor is switched off, carried to another street and switched on again.
+TEST(Gap, ThatEndsElsewhereBeginsAnotherSession) {
+  const sim::MotionOptions motion{.speed_mps = 8.0, .duration_s = 6.0, .start_in_motion = true};
+  const Recording here = recording_of("street", motion, 91),
+                  there = recording_of("street", motion, 92);
+  Odometry odometry{OdometryConfig{}};
+  for (const Scan& scan : here.scans) odometry.process(scan);
+  const std::int64_t later_ns = 9'000'000'000;
+  Poses tracked;
+  std::optional<Pose> T_world_odom;
+  for (std::size_t k = 0; k < there.scans.size(); ++k) {
+    Scan scan = there.scans[k];
+    scan.start_ns += later_ns;
+    scan.end_ns += later_ns;
+    const Estimate e = odometry.process(scan);
+    if (e.restarts == 0) {
+      EXPECT_EQ(e.status, TrackingStatus::lost) << "scan " << k;
+    }
+    if (e.status != TrackingStatus::tracking) continue;
+    if (!T_world_odom) T_world_odom = there.truth[k] * e.T_odom_sensor.inverse();
+    tracked.add(there.truth[k].inverse() * *T_world_odom * e.T_odom_sensor);
+  }
+  std::printf("%d of %zu poses tracked in the other street within %.3f m\n", tracked.count,
+              there.scans.size(), tracked.worst_m);
+  EXPECT_GT(tracked.count, 40);
+  EXPECT_LT(tracked.worst_m, 0.2);
+}
+
 /// The first `scans` of a recording of a sensor that stands, `times` over, and then all of it.
 Recording stand_longer(const Recording& recording, std::size_t scans, int times) {
   Recording out;
