@@ -1,6 +1,7 @@
 #include "core/standard/footprint.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace lilo::standard {
 namespace {
@@ -132,7 +133,7 @@ void Footprint::aim(const Plan& scan, const Eigen::Vector2d& begin_m, const Eige
 }
 
 int Footprint::returns_on(int x, int y) const {
-  const std::uint8_t* taken = taken_.data() + y * kSide + x;
+  const std::uint8_t* taken = taken_.data() + std::ptrdiff_t{y} * kSide + x;
   const std::uint8_t now = now_;
   int returns = 0;
   for (std::size_t k = 0; k < aimed_; ++k) returns += static_cast<int>(taken[at_[k]] == now);

@@ -36,7 +36,7 @@ Relocalizer::Relocalizer(std::size_t most_features)
   outline_.reserve(most_features);
   plan_.reserve(most_features);
   const auto width = [](double reach, double step) {
-    return static_cast<std::size_t>(2 * wide_steps_in(reach, step) + 1);
+    return 2 * static_cast<std::size_t>(wide_steps_in(reach, step)) + 1;
   };
   const std::size_t across = width(kFarthest.along_m, kStep_m);
   looks_.reserve(across * across * width(kFarthest.yaw_rad, kStep_rad) +

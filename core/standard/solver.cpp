@@ -174,7 +174,7 @@ Solver::Equations Solver::data_equations(double span_s, Matrix6d& data_informati
 Solution Solver::unmoved(const Prior& prior) const {
   Solution solution;
   solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, config_.segments,
-                         Unknowns::Zero(kKnotSize * (config_.segments + 1))};
+                         Unknowns::Zero(Eigen::Index{kKnotSize} * (config_.segments + 1))};
   return solution;
 }
 
@@ -187,7 +187,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   constexpr double kFurther = 1.2;
   std::size_t stride = kCoarseStride;
   Solution solution = unmoved(prior);
-  const auto n = solution.trajectory.knots.rows();
+  const Eigen::Index n = solution.trajectory.knots.rows();
   last_.assign(features.size(), {});
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, solution);

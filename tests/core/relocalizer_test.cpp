@@ -14,12 +14,12 @@ namespace {
 constexpr double kSpan_s = 0.1;
 const Eigen::Vector3d kCenter_m(300.0, -120.0, 4.0);  // the map's, far from the origin
 
-std::vector<Eigen::Vector3d> posts_around(const Eigen::Vector3d& center_m, int count) {
+std::vector<Eigen::Vector3d> posts_around(const Eigen::Vector3d& center_m, std::size_t count) {
   std::minstd_rand random(5);
   std::uniform_real_distribution<double> across(-50.0, 50.0), high(-1.0, 3.0);
-  std::vector<Eigen::Vector3d> posts_m;
-  for (int k = 0; k < count; ++k) {
-    posts_m.push_back(center_m + Eigen::Vector3d(across(random), across(random), high(random)));
+  std::vector<Eigen::Vector3d> posts_m(count);
+  for (Eigen::Vector3d& post_m : posts_m) {
+    post_m = center_m + Eigen::Vector3d(across(random), across(random), high(random));
   }
   return posts_m;
 }
