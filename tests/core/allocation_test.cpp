@@ -37,10 +37,11 @@ std::ostream& operator<<(std::ostream& out, const Drive& drive) { return out << 
 
 class OdometryAllocation : public testing::TestWithParam<Drive> {};
 
-// The whole drive, so also where the map is cropped. Eigen's own allocations (std::malloc) are
-// not counted here; tests/daemon/hog counts every malloc of the worker.
+// The whole drive, so also where the map is cropped, with a gap after which the place in the map is
+// looked for. Eigen's own allocations (std::malloc) are not counted here; tests/daemon/hog counts
+// every malloc of the worker.
 TEST_P(OdometryAllocation, NoneOnceWarm) {
-  constexpr std::uint64_t kWarmScans = 20;
+  constexpr std::uint64_t kWarmScans = 20, kLastBeforeGap = 60, kFirstAfterGap = 76;
   const std::string folder = test::data_path(GetParam().folder);
   LILO_NEED_DATA(GetParam().folder);
   SensorConfig sensor;
@@ -54,9 +55,11 @@ TEST_P(OdometryAllocation, NoneOnceWarm) {
   std::vector<std::uint64_t> guilty;
   std::uint64_t count = 0;
   while (scans->next(scan)) {
+    ++count;
+    if (count > kLastBeforeGap && count < kFirstAfterGap) continue;
     const std::uint64_t before = allocations;
     odometry.process(scan);
-    if (++count > kWarmScans && allocations != before) guilty.push_back(count - 1);
+    if (count > kWarmScans && allocations != before) guilty.push_back(count - 1);
   }
   EXPECT_GT(count, 100U);
   EXPECT_EQ(guilty, std::vector<std::uint64_t>{}) << "scans that took memory";
