@@ -6,6 +6,7 @@
 #include "core/paper/segmentation.hpp"
 #include "core/standard/feature_image.hpp"
 #include "core/standard/footprint.hpp"
+#include "core/standard/relocalizer.hpp"
 #include "core/standard/selection.hpp"
 #include "core/standard/solver.hpp"
 
@@ -116,6 +117,25 @@ void fill(standard::CellMap& map, const std::vector<standard::Feature>& features
   for (const standard::Feature& f : features) map.insert(position_of(f), {f.dx_m, f.dy_m, f.dz_m});
 }
 
+// As far as it ever looks, the map being drawn already.
+void relocalization(benchmark::State& state) {
+  const Scan scan = hall_scan(rings_of(state));
+  standard::FeatureImage image(1024, {});
+  const auto& features = image.build(scan);
+  standard::CellMap map = empty_map(1.5F);
+  fill(map, features);
+  standard::Selection chosen(1200, 1500);
+  const auto& asked = chosen.choose(features);
+  standard::Trajectory standing;
+  standing.knots = standard::Unknowns::Zero(Eigen::Index{standard::kKnotSize} * 2);
+  standard::Relocalizer relocalizer(chosen.most());
+  relocalizer.set_map(map, Eigen::Vector3d::Zero());
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        relocalizer.search(asked, standing, standard::Relocalizer::kFarthest).data());
+  }
+}
+
 void cell_map_insert(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
   standard::FeatureImage image(1024, {});
@@ -217,6 +237,7 @@ void paper_correspondences(benchmark::State& state) {
 LILO_KERNEL(image_features);
 LILO_KERNEL(selection);
 LILO_KERNEL(footprint);
+LILO_KERNEL(relocalization);
 LILO_KERNEL(cell_map_insert);
 LILO_KERNEL(cell_map_find);
 LILO_KERNEL(solver_round);
