@@ -110,14 +110,13 @@ std::vector<Key> default_profile_keys() {
            kRestart, "Range noise of the sensor, 1 sigma."),
       real("odometry.default.roll_pitch_density", LILO_MEMBER(odometry.standard.roll_pitch_density),
            0.0001, 100.0, "", kRestart,
-           "How fast roll and pitch rates may change: power density of the angular acceleration "
-           "(rad2/s3). What the ground asks for is learnt from here on, up to 55 times more or "
-           "seven times less."),
+           "Least process noise of roll and pitch: power density of the angular acceleration "
+           "(rad2/s3). More is estimated on the way."),
       real("odometry.default.yaw_density", LILO_MEMBER(odometry.standard.yaw_density), 0.0001,
-           100.0, "", kRestart, "The same for the yaw rate (rad2/s3); not learnt."),
+           100.0, "", kRestart, "The same for yaw (rad2/s3)."),
       real("odometry.default.translation_density",
            LILO_MEMBER(odometry.standard.translation_density), 0.001, 1000.0, "", kRestart,
-           "The same for the velocity (m2/s3); up and down it is learnt as well."),
+           "The same for the velocity (m2/s3)."),
   };
 }
 

@@ -73,14 +73,14 @@ struct StandardConfig {
   double keyframe_rad = 2.0 * std::numbers::pi / 180.0;  ///< or turned so far
   double noise_m = 0.015;                                ///< 1 sigma of a return across a surface
   double ground_kernel = 1.5;     ///< Cauchy scale in sigmas of the map: ground is rough
-  double structure_kernel = 1.0;  ///< tighter: structure moves, hides and sways
+  double structure_kernel = 0.5;  ///< tighter: structure moves, hides and sways
   double data_weight = 0.1;       ///< neighbouring residuals are not independent: each counts less
   int segments = 2;               ///< pieces of the motion within one scan
   int max_iterations = 8;
-  /// Power densities of the acceleration's white noise: how fast the motion may change. That of
-  /// roll and pitch, and of the height, is where learning begins (standard/unrest.hpp).
+  /// Process noise: power densities of the acceleration's white noise, how fast the motion may
+  /// change. The least that is assumed; more is estimated on the way (standard/process_noise.hpp).
   double roll_pitch_density = 0.3;   ///< rad^2/s^3: suspension, rough ground
-  double yaw_density = 0.03;         ///< rad^2/s^3
+  double yaw_density = 0.3;          ///< rad^2/s^3
   double translation_density = 3.0;  ///< m^2/s^3
 };
 

@@ -21,8 +21,6 @@ constexpr float kFarApart_m = 10.0F;
 // The lasers of one firing look up to 18 degrees apart (HDL-64E). Columns nearer to the front, and
 // those around the scan's first return, where it ends as well, may still get returns.
 constexpr float kSpread_rad = 0.35F;
-// With 64 rings, 512 to 1024 columns give the same errors. Fewer are worse, more cost time.
-constexpr int kMostPixels = 64 * 576;
 
 constexpr float kNone_m2 = std::numeric_limits<float>::max();
 

@@ -45,14 +45,14 @@ void add_prior(const Prior& prior, int segments, const Unknowns& x, NormalMatrix
   }
 }
 
-Eigen::Matrix<double, 6, kUnrests> unrest_axes() {
-  Eigen::Matrix<double, 6, kUnrests> axes;
-  axes.col(0) << 1, 1, 0, 0, 0, 0;
-  axes.col(1) << 0, 0, 0, 0, 0, 1;
-  return axes;
+Vector6d mean_by_kind(const Vector6d& of_axes) {
+  Vector6d mean = of_axes;
+  mean.head<2>().setConstant(of_axes.head<2>().mean());
+  mean.segment<2>(3).setConstant(of_axes.segment<2>(3).mean());
+  return mean;
 }
 
-PerUnrest surprise_of(const Prior& prior, int segments, const Unknowns& x) {
+Vector6d normalised_innovation(const Prior& prior, int segments, const Unknowns& x) {
   const Step step(prior, segments);
   Vector6d squares = Vector6d::Zero();
   for (int k = 0; k < segments; ++k) {
@@ -60,38 +60,12 @@ PerUnrest surprise_of(const Prior& prior, int segments, const Unknowns& x) {
     const Knot eWe = e.cwiseProduct(step.W * e);
     squares += eWe.head<6>() + eWe.tail<6>();
   }
-  const Eigen::Matrix<double, 6, kUnrests> axes = unrest_axes();
-  const PerUnrest count = 2.0 * segments * axes.colwise().sum();
-  return (axes.transpose() * squares).cwiseQuotient(count);
+  return mean_by_kind(squares / (2.0 * segments));
 }
 
-Prior loosened(Prior prior, const PerUnrest& surprise) {
-  const PerUnrest more = surprise.cwiseMax(1.0) - PerUnrest::Ones();
-  prior.acceleration_density.array() *= 1.0 + (unrest_axes() * more).array();
+Prior inflated(Prior prior, const Vector6d& innovation) {
+  prior.acceleration_density.array() *= innovation.array().max(1.0);
   return prior;
-}
-
-UnrestPull pull_of_unrest(const Prior& prior, int segments, const Unknowns& x) {
-  UnrestPull pull = UnrestPull::Zero(x.size(), kUnrests);
-  const Step step(prior, segments);
-  using OfKnot = Eigen::Matrix<double, kKnotSize, kUnrests>;  // of d and of its rate
-  const OfKnot axes = unrest_axes().replicate<2, 1>();
-  for (int k = 0; k < segments; ++k) {
-    const int i = kKnotSize * k, j = i + kKnotSize;
-    // W goes with the inverse of the density, so what it adds to the right-hand side is taken away.
-    const Knot We = step.W * step.error(x, i);
-    const OfKnot by_kind = We.asDiagonal() * axes;
-    pull.middleRows<kKnotSize>(i) -= step.phi.transpose() * by_kind;
-    pull.middleRows<kKnotSize>(j) += by_kind;
-  }
-  return pull;
-}
-
-Vector6d wildest_begin(Prior prior, int segments, const Unknowns& x, NormalMatrix H, Unknowns b) {
-  prior.acceleration_density = prior.acceleration_density.cwiseMax(prior.wildest_density);
-  add_prior(prior, segments, x, H, b);
-  const Unknowns step = H.ldlt().solve(b);
-  return x.head<6>() + step.head<6>();
 }
 
 KnotInformation process_information(const Vector6d& acceleration_density, double dt_s) {

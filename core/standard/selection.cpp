@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <span>
-#include <utility>
+#include <numeric>
 
 namespace lilo::standard {
 
@@ -13,6 +12,15 @@ Selection::Selection(int ground_goal, int structure_goal)
       taken_(std::bit_ceil(static_cast<std::size_t>(ground_goal + structure_goal) * 4)),
       mask_(taken_.size() - 1) {
   chosen_.reserve(taken_.size() / 2);
+  picked_.reserve(FeatureImage::kMostPixels);
+}
+
+/// A step that visits all of `size` elements, one after the other far apart and evenly spread.
+std::size_t Selection::golden_stride(std::size_t size) {
+  constexpr double kGolden = 0.6180339887498949;
+  auto stride = static_cast<std::size_t>(kGolden * static_cast<double>(size)) | 1U;
+  while (std::gcd(stride, size) > 1) stride += 2;
+  return stride;
 }
 
 std::uint64_t Selection::voxel_of(const Feature& f, float per_m) {
@@ -47,34 +55,22 @@ bool Selection::take_evenly(const std::vector<Feature>& all) {
   chosen_.clear();
   std::array<int, kKinds> count{}, offered{};
   const std::array<float, kKinds> per_m{1.0F / voxel_m_[0], 1.0F / voxel_m_[1]};
-  std::array<std::uint64_t, kMaxRings> last{};  // of each ring: often the same again
   bool done = true;
-  // Which of them lie in another voxel than the one before is not for a processor to foretell.
-  // Those that do are gathered first, without a branch.
-  constexpr std::size_t kAtATime = 64;
-  std::array<const Feature*, kAtATime> fresh;
-  std::array<std::uint64_t, kAtATime> voxels;
-  for (std::span<const Feature> rest = all; !rest.empty();) {
-    const auto some = rest.first(std::min(rest.size(), kAtATime));
-    rest = rest.subspan(some.size());
-    std::size_t n = 0;
-    for (const Feature& f : some) {
-      const auto kind = static_cast<std::size_t>(f.kind);
-      ++offered[kind];
-      fresh[n] = &f;
-      voxels[n] = voxel_of(f, per_m[kind]);
-      const bool same = voxels[n] == std::exchange(last[f.ring], voxels[n]);
-      n += static_cast<std::size_t>(!same);
+  picked_.assign(all.size(), 0);
+  const std::size_t stride = golden_stride(all.size());
+  for (std::size_t n = 0, at = 0; n < all.size(); ++n, at = (at + stride) % all.size()) {
+    const Feature& f = all[at];
+    const auto kind = static_cast<std::size_t>(f.kind);
+    ++offered[kind];
+    if (count[kind] >= 2 * goal_[kind]) {
+      done = false;
+    } else if (take(voxel_of(f, per_m[kind]))) {
+      ++count[kind];
+      picked_[at] = 1;
     }
-    for (std::size_t k = 0; k < n; ++k) {
-      const auto kind = static_cast<std::size_t>(fresh[k]->kind);
-      if (count[kind] >= 2 * goal_[kind]) {
-        done = false;
-      } else if (take(voxels[k])) {
-        ++count[kind];
-        chosen_.push_back(*fresh[k]);
-      }
-    }
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (picked_[k] != 0) chosen_.push_back(all[k]);
   }
   for (std::size_t k = 0; k < kKinds; ++k) {
     // On surfaces the number goes with the inverse square of the voxel; 0.35 instead of 0.5 damps.

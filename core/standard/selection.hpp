@@ -10,7 +10,9 @@ namespace lilo::standard {
 
 /// Chooses the features to align: one a voxel, so that near and far surfaces count by their area
 /// and not by the density of the rays. The voxels of each kind follow the scene, to keep the
-/// numbers of features near their goals. No allocation after construction.
+/// numbers of features near their goals. Features are visited spread over the image: the first of a
+/// voxel in azimuth order would always be the one on the same side of it, and bend the path.
+/// No allocation after construction.
 class Selection {
  public:
   Selection(int ground_goal, int structure_goal);
@@ -23,6 +25,7 @@ class Selection {
 
  private:
   static constexpr int kKinds = 2;
+  [[nodiscard]] static std::size_t golden_stride(std::size_t size);
   [[nodiscard]] static std::uint64_t voxel_of(const Feature& f, float per_m);
   /// False when a goal was reached twice over before the end, or not even half though there is
   /// more. Adapts the voxels in any case.
@@ -33,6 +36,7 @@ class Selection {
   std::array<float, kKinds> voxel_m_{1.0F, 0.5F};
   std::vector<std::uint64_t> taken_;  // hash set of voxels, 0: empty
   std::size_t mask_;
+  std::vector<std::uint8_t> picked_;  // of each feature
   std::vector<Feature> chosen_;
 };
 

@@ -10,6 +10,10 @@
 namespace lilo::standard {
 namespace {
 
+// Far from the solution residuals are larger than noise and what moves: a wide kernel first, then
+// the tight one (graduated non-convexity; Yang et al., RA-L 2020).
+constexpr float kCoarseKernels = 4.0F;
+
 /// Information of the last knot when the others are not asked: the Schur complement.
 KnotInformation marginal_of_last(const NormalMatrix& H) {
   const auto n = H.rows() - kKnotSize;
@@ -103,6 +107,7 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   Sums sums;
   solution.asked = solution.matched = 0;
   const float data_weight = config_.data_weight * static_cast<float>(stride);
+  const float kernel_scale = stride > 1 ? kCoarseKernels : 1.0F;
   for (std::size_t k = 0, n = 0; k < features.size(); k += n * stride) {
     n = look_up(features, k, stride, maps);
     solution.asked += static_cast<int>(n);
@@ -111,7 +116,7 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
     for (const Asked& one : asked) {
       if (one.match.information == nullptr) continue;
       ++solution.matched;
-      add_residual(one, data_weight, sums);
+      add_residual(one, kernel_scale, data_weight, sums);
     }
   }
   solution.inliers = sums.weights;
@@ -119,14 +124,14 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   solution.mean_square = sums.weights > 0.0 ? sums.squares / sums.weights : 0.0;
 }
 
-void Solver::add_residual(const Asked& one, float data_weight, Sums& sums) {
+void Solver::add_residual(const Asked& one, float kernel_scale, float data_weight, Sums& sums) {
   const bool ground = one.feature->kind == Kind::ground;
   const Eigen::Vector3f& r = one.match.from_mean_m;
   const Symmetric& i = *one.match.information;
   const Eigen::Matrix3f O = matrix_of(i);
   const Eigen::Vector3f Or = O * r;
   const float square = r.dot(Or);
-  const float kernel = ground ? config_.ground_kernel : config_.structure_kernel;
+  const float kernel = kernel_scale * (ground ? config_.ground_kernel : config_.structure_kernel);
   const float robust = 1.0F / (1.0F + square / (kernel * kernel));
   sums.weights += static_cast<double>(robust);
   if (!ground) sums.structure += static_cast<double>(robust);
@@ -191,14 +196,12 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   last_.assign(features.size(), {});
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, solution);
-    const Equations data = data_equations(prior.span_s, solution.data_information);
+    Equations data = data_equations(prior.span_s, solution.data_information);
     const Unknowns x = solution.trajectory.knots;
-    solution.surprise = surprise_of(prior, config_.segments, x);
-    const Prior believed = loosened(prior, solution.surprise);
-    auto [H, b] = data;
-    add_prior(believed, config_.segments, x, H, b);
-    const Eigen::LDLT<NormalMatrix> factors(H);
-    const Unknowns step = factors.solve(b);
+    auto& [H, b] = data;
+    const Vector6d innovation = normalised_innovation(prior, config_.segments, x);
+    add_prior(inflated(prior, innovation), config_.segments, x, H, b);
+    const Unknowns step = H.ldlt().solve(b);
     if (!step.allFinite()) break;
     solution.trajectory.knots += (stride == 1 ? kFurther : 1.0) * step;
     ++solution.iterations;
@@ -210,14 +213,10 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     if (solution.iterations + 1 >= config_.max_iterations) stride = 1;
     if (solution.converged || solution.iterations == config_.max_iterations) {
       solution.end_information = marginal_of_last(H);
-      const UnrestPull by_unrest =
-          factors.solve(pull_of_unrest(believed, config_.segments, solution.trajectory.knots));
-      solution.end_by_unrest = by_unrest.middleRows<6>(n - kKnotSize);
-      solution.wildest_begin = wildest_begin(believed, config_.segments, x, data.H, data.b);
     }
   }
-  const KnotInformation unrest = process_information(prior.acceleration_density, prior.span_s);
-  solution.motion_information = unrest.inverse().topLeftCorner<6, 6>().inverse();
+  const KnotInformation noise = process_information(prior.acceleration_density, prior.span_s);
+  solution.motion_information = noise.inverse().topLeftCorner<6, 6>().inverse();
   return solution;
 }
 

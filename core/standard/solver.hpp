@@ -35,16 +35,13 @@ struct SolverConfig {
   int segments = 1;
   int max_iterations = 8;
   float ground_kernel = 1.5F;     ///< Cauchy scale in sigmas of the map: ground is rough
-  float structure_kernel = 1.0F;  ///< tighter: structure moves and hides
+  float structure_kernel = 0.5F;  ///< tighter: structure moves and hides
   float data_weight = 0.1F;  ///< neighbouring residuals are not independent: each counts for less
 };
 
 struct Solution {
   Trajectory trajectory;
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
-  PerUnrest surprise = PerUnrest::Zero();                     ///< what the prior had not expected
-  EndByUnrest end_by_unrest = EndByUnrest::Zero();            ///< d end / d log density
-  Vector6d wildest_begin = Vector6d::Zero();                  ///< see motion_prior.hpp
   /// Of the pose, from the scan alone, as though its residuals were independent.
   Matrix6d data_information = Matrix6d::Zero();
   /// Of the pose, from a motion known exactly until the scan began.
@@ -104,7 +101,7 @@ class Solver {
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride,
                       const LocalMaps& maps);
   static void match(std::span<Asked> asked, LocalMaps& maps);
-  void add_residual(const Asked& one, float data_weight, Sums& sums);
+  void add_residual(const Asked& one, float kernel_scale, float data_weight, Sums& sums);
   Equations data_equations(double span_s, Matrix6d& data_information) const;
 
   SolverConfig config_;

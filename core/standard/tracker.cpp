@@ -44,7 +44,7 @@ SolverConfig solver_config(const StandardConfig& c) {
   return s;
 }
 
-Vector6d usual_density(const StandardConfig& c) {
+Vector6d nominal_density(const StandardConfig& c) {
   Vector6d density;
   density << c.roll_pitch_density, c.roll_pitch_density, c.yaw_density,
       Eigen::Vector3d::Constant(c.translation_density);
@@ -58,7 +58,7 @@ Tracker::Tracker(const OdometryConfig& config)
       selection_(config.standard.ground_features, config.standard.structure_features),
       maps_(make_maps(config.standard)),
       solver_(solver_config(config.standard), selection_.most()),
-      unrest_(usual_density(config.standard)),
+      process_noise_(nominal_density(config.standard)),
       footprint_(selection_.most()),
       motion_check_(selection_.most()),
       relocalizer_(selection_.most()),
@@ -79,12 +79,10 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
   timing_ = {scan.start_ns, scan.end_ns, scan.motion_compensated};
   remember(features, chosen);
   const Prior prior = predict(timing_);
-  const TrackingStatus last_status = status_;
-  const EndByUnrest last_end_by_unrest = solution_.end_by_unrest;
   solution_ = solve(scan, chosen, prior);
   status_ = status_of(scan, solution_, chosen.size());
   if (status_ != TrackingStatus::lost) last_aligned_ns_ = timing_.end_ns;
-  learn_unrest(last_status, last_end_by_unrest);
+  observe_motion();
   accept(timing_, prior, solution_);
   if (seen_count_ > 1 && status_ != TrackingStatus::lost) {
     note_track(seen_[seen_count_ - 1], solution_.trajectory.at(0.0), T_odom_sensor_);
@@ -153,8 +151,7 @@ Prior Tracker::predict(const Timing& scan) const {
   const double gap_s = unseen_s > kLongestGap_s ? 0.0 : std::max(0.0, unseen_s);
   prior.T_begin = moved(T_odom_sensor_, twist_, gap_s);
   prior.twist = twist_;
-  prior.acceleration_density = unrest_.density();
-  prior.wildest_density = unrest_.wildest_density();
+  prior.acceleration_density = process_noise_.density();
   prior.begin_information = propagated(information_, prior.acceleration_density, gap_s);
   return prior;
 }
@@ -175,15 +172,14 @@ TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
   return scan.complete && solution.converged ? TrackingStatus::tracking : TrackingStatus::degraded;
 }
 
-/// From what this scan says of the last one's end, where it began.
-void Tracker::learn_unrest(TrackingStatus last_status, const EndByUnrest& last_end_by_unrest) {
-  const auto is_good = [](TrackingStatus status) {
-    return status == TrackingStatus::tracking || status == TrackingStatus::degraded;
-  };
-  // A scan whose returns all belong to its end knows nothing of its beginning.
-  if (timing_.motion_compensated || !follows(timing_, last_end_ns_)) return;
-  if (!is_good(last_status) || !is_good(status_)) return;
-  unrest_.learn(solution_.wildest_begin, last_end_by_unrest, solution_.surprise);
+void Tracker::observe_motion() {
+  // A scan whose returns all belong to its end has no middle.
+  if (timing_.motion_compensated || status_ == TrackingStatus::lost) {
+    process_noise_.interrupt();
+    return;
+  }
+  process_noise_.observe(solution_.trajectory.at(0.5),
+                         timing_.start_ns + (timing_.end_ns - timing_.start_ns) / 2);
 }
 
 void Tracker::accept(const Timing& scan, const Prior& prior, const Solution& solution) {
@@ -216,8 +212,9 @@ bool Tracker::is_refuted(const std::vector<Feature>& chosen) {
 
 /// Of the last pose against the map: rotation, translation; odometry axes.
 Matrix6d Tracker::alignment_covariance() const {
-  // The unit of the cost is free: only what residuals and unrest count against each other makes the
-  // pose. This makes mean squared errors what they should be (tests/tools/starts_test.cpp).
+  // The unit of the cost is free: only what residuals and process noise count against each other
+  // makes the pose. This makes mean squared errors what they should be
+  // (tests/tools/starts_test.cpp).
   constexpr double kUnit = 1.0 / 3.0;
   return kUnit * information_.inverse().topLeftCorner<6, 6>();
 }

@@ -4,10 +4,10 @@
 #include "core/standard/drift.hpp"
 #include "core/standard/footprint.hpp"
 #include "core/standard/motion_check.hpp"
+#include "core/standard/process_noise.hpp"
 #include "core/standard/relocalizer.hpp"
 #include "core/standard/selection.hpp"
 #include "core/standard/solver.hpp"
-#include "core/standard/unrest.hpp"
 
 #include <array>
 #include <utility>
@@ -70,7 +70,7 @@ class Tracker {
   static bool follows(const Timing& scan, std::int64_t end_ns);
   [[nodiscard]] Prior predict(const Timing& scan) const;
   Solution solve(const Scan& scan, const std::vector<Feature>& chosen, const Prior& prior);
-  void learn_unrest(TrackingStatus last_status, const EndByUnrest& last_end_by_unrest);
+  void observe_motion();
   void accept(const Timing& scan, const Prior& prior, const Solution& solution);
   bool is_refuted(const std::vector<Feature>& chosen);
   [[nodiscard]] TrackingStatus status_of(const Scan& scan, const Solution& solution,
@@ -143,7 +143,7 @@ class Tracker {
   Sampled sampled_;
   Held held_;
   Drift drift_;
-  Unrest unrest_;
+  ProcessNoise process_noise_;
   Footprint footprint_;
   MotionCheck motion_check_;
   Relocalizer relocalizer_;

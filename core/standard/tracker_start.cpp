@@ -57,6 +57,7 @@ void Tracker::start_anew() {
 }
 
 void Tracker::stand_at_origin() {
+  process_noise_.interrupt();
   T_odom_sensor_ = {};
   T_odom_keyframe_ = {};
   held_.waiting = false;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -71,6 +72,28 @@ TEST(Selection, TakesEnoughOfANarrowPlaceAtOnce) {
   }
   Selection selection(900, 1100);
   EXPECT_GE(selection.choose(all).size(), 550U);
+}
+
+// Ten returns a metre along a wall, in azimuth order. What is taken of a voxel is as often on its
+// one side as on the other: the first would lie 0.45 m before the middle.
+TEST(Selection, FavoursNoSideOfAVoxel) {
+  constexpr int kPerMetre = 10, kLength_m = 400;
+  std::vector<Feature> all;
+  for (int k = 0; k < kPerMetre * kLength_m; ++k) {
+    Feature f{};
+    f.x_m = (static_cast<float>(k) + 0.5F) / kPerMetre;
+    f.kind = Kind::structure;
+    all.push_back(f);
+  }
+  Selection selection(400, kLength_m);
+  for (int scan = 0; scan < 30; ++scan) selection.choose(all);  // voxels follow the goal
+  double from_middle_m = 0.0;
+  const std::vector<Feature>& chosen = selection.choose(all);
+  for (const Feature& f : chosen) {
+    from_middle_m += static_cast<double>(f.x_m) - std::floor(static_cast<double>(f.x_m)) - 0.5;
+  }
+  EXPECT_NEAR(static_cast<double>(chosen.size()), kLength_m, 0.05 * kLength_m);
+  EXPECT_LT(std::abs(from_middle_m) / static_cast<double>(chosen.size()), 0.05);
 }
 
 TEST(Selection, TakesWhatThereIs) {

@@ -1,0 +1,107 @@
+// The process noise is estimated from the motion, and a motion that was not expected is followed.
+#include "core/standard/process_noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace lilo::standard {
+namespace {
+
+constexpr std::int64_t kScan_ns = 100'000'000;
+
+Vector6d nominal() {
+  Vector6d density;
+  density << 0.3, 0.3, 0.3, 3.0, 3.0, 3.0;
+  return density;
+}
+
+/// What comes of 30 s of scans whose middle is at `pose_at(seconds)`.
+template <typename PoseAt>
+Vector6d density_after(ProcessNoise& noise, const PoseAt& pose_at) {
+  for (std::int64_t scan = 0; scan < 300; ++scan) {
+    const std::int64_t stamp_ns = scan * kScan_ns;
+    noise.observe(pose_at(1e-9 * static_cast<double>(stamp_ns)), stamp_ns);
+  }
+  return noise.density();
+}
+
+TEST(ProcessNoise, OfASteadyMotionIsTheNominal) {
+  ProcessNoise noise(nominal());
+  const Vector6d density = density_after(noise, [](double t_s) {
+    return Pose{so3_exp({0.0, 0.0, 0.4 * t_s}), {12.0 * t_s, 0.0, 0.1 * t_s}};
+  });
+  EXPECT_EQ(density, nominal());
+}
+
+// A rate of 30 deg/s rms, new in every scan: mean velocities over adjacent intervals differ by
+// twice its variance, so that q is 3/2 of that over T.
+TEST(ProcessNoise, GrowsWithTheMotionOfItsOwnAxesOnly) {
+  constexpr double kRate_radps = std::numbers::pi / 6.0, kT_s = 0.1;
+  ProcessNoise noise(nominal());
+  std::mt19937 rng(1);
+  std::normal_distribution<double> normal;
+  double pitch_rad = 0.0;
+  double sum = 0.0;
+  for (std::int64_t scan = 0; scan < 5000; ++scan) {
+    pitch_rad += kT_s * kRate_radps * normal(rng);
+    noise.observe({so3_exp({0.0, pitch_rad, 0.0}), Eigen::Vector3d::Zero()}, scan * kScan_ns);
+    if (scan >= 1000) sum += noise.density()[1] / 4000.0;
+  }
+  // Of two axes that share their noise one moves.
+  const double white = 1.5 * 2.0 * kRate_radps * kRate_radps / kT_s / 2.0;
+  EXPECT_GT(sum, white);  // more by what is lost between the middles of two scans
+  EXPECT_LT(sum, 16.0 * white);
+  EXPECT_EQ(noise.density()[0], noise.density()[1]);
+  EXPECT_EQ(noise.density().tail<4>(), nominal().tail<4>());
+}
+
+TEST(ProcessNoise, CalmsDownWithTheMotion) {
+  ProcessNoise noise(nominal());
+  density_after(noise, [](double t_s) {
+    return Pose{so3_exp({0.05 * std::sin(20.0 * t_s), 0.0, 0.0}), Eigen::Vector3d::Zero()};
+  });
+  EXPECT_GT(noise.density()[0], 2.0 * nominal()[0]);
+  noise.interrupt();
+  density_after(noise, [](double) { return Pose{}; });
+  EXPECT_EQ(noise.density(), nominal());
+}
+
+// A pose put right, a new map or a gap is no motion.
+TEST(ProcessNoise, DoesNotTakeAJumpAcrossAnInterruptionForMotion) {
+  ProcessNoise noise(nominal());
+  const Pose there{so3_exp({0.5, 0.2, 1.0}), {7.0, 8.0, 9.0}};
+  density_after(noise, [](double) { return Pose{}; });
+  noise.interrupt();
+  density_after(noise, [&](double) { return there; });
+  EXPECT_EQ(noise.density(), nominal());
+  noise.observe({}, 300 * kScan_ns + 2'000'000'000);
+  EXPECT_EQ(noise.density(), nominal());
+}
+
+constexpr int kSegments = 2;
+constexpr int kSize = kKnotSize * (kSegments + 1);
+
+// A constant acceleration a over dt departs by a dt^2/2 and a dt: a^2 dt / q, over two numbers.
+TEST(NormalisedInnovation, IsOneUnderThePriorInflatedByIt) {
+  Prior prior;
+  prior.acceleration_density = nominal();
+  const double a = 20.0, dt_s = prior.span_s / kSegments;
+  Unknowns x = Unknowns::Zero(kSize);
+  for (int k = 1; k <= kSegments; ++k) {
+    const double t_s = k * dt_s;
+    x[kKnotSize * k + 5] = 0.5 * a * t_s * t_s;
+    x[kKnotSize * k + 11] = a * t_s;
+  }
+  const Vector6d innovation = normalised_innovation(prior, kSegments, x);
+  EXPECT_EQ(innovation.head<5>(), Vector6d::Zero().head<5>());
+  EXPECT_NEAR(innovation[5], a * a * dt_s / 3.0 / 2.0, 1e-9);
+  const Prior wide = inflated(prior, innovation);
+  EXPECT_EQ(wide.acceleration_density.head<5>(), prior.acceleration_density.head<5>());
+  EXPECT_NEAR(normalised_innovation(wide, kSegments, x)[5], 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace lilo::standard
