@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -27,10 +28,12 @@ namespace {
 
 Matched by_time(const Trajectory& estimate, const Trajectory& truth) {
   Matched matched;
-  for (const StampedPose& pose : estimate.poses) {
+  for (std::size_t row = 0; row < estimate.poses.size(); ++row) {
+    const StampedPose& pose = estimate.poses[row];
     if (const auto at = pose_at(truth.poses, pose.stamp_ns)) {
       matched.estimate.push_back(pose.pose);
       matched.truth.push_back(*at);
+      matched.rows.push_back(row);
     } else {
       ++matched.unmatched;
     }
@@ -47,6 +50,8 @@ Matched by_row(const Trajectory& estimate, const Trajectory& truth) {
   Matched matched;
   for (const StampedPose& pose : estimate.poses) matched.estimate.push_back(pose.pose);
   for (const StampedPose& pose : truth.poses) matched.truth.push_back(pose.pose);
+  matched.rows.resize(estimate.poses.size());
+  std::iota(matched.rows.begin(), matched.rows.end(), std::size_t{0});
   return matched;
 }
 

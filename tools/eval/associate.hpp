@@ -11,7 +11,8 @@ namespace lilo {
 struct Matched {
   std::vector<Pose> estimate;
   std::vector<Pose> truth;
-  std::size_t unmatched = 0;  ///< poses of the estimate at whose time the truth is unknown
+  std::vector<std::size_t> rows;  ///< which poses of the estimate these are
+  std::size_t unmatched = 0;      ///< poses of the estimate at whose time the truth is unknown
 };
 
 /// Truth this far beyond its first or last pose is still taken, along the motion of its end: file

@@ -20,10 +20,16 @@ struct EvalOptions {
   bool json = false;
 };
 
-void run_eval(const EvalOptions& options) {
-  const Trajectory estimate = read_trajectory(options.estimate);
+Evaluation evaluation_of(const EvalOptions& options) {
   const Trajectory truth = read_truth(options.truth);
-  const Evaluation evaluation = evaluate(estimate, truth, options.lengths_m, options.step);
+  if (is_pose_stream(options.estimate)) {
+    return evaluate(read_pose_stream(options.estimate), truth, options.lengths_m, options.step);
+  }
+  return evaluate(read_trajectory(options.estimate), truth, options.lengths_m, options.step);
+}
+
+void run_eval(const EvalOptions& options) {
+  const Evaluation evaluation = evaluation_of(options);
   fmt::print("{}", options.json ? to_json(evaluation) : to_text(evaluation));
 }
 
@@ -32,7 +38,10 @@ void run_eval(const EvalOptions& options) {
 void add_eval_command(CLI::App& app) {
   auto options = std::make_shared<EvalOptions>();
   CLI::App* command = app.add_subcommand("eval", "Compare an estimated trajectory with the truth");
-  command->add_option("ESTIMATE", options->estimate, "TUM or KITTI poses")->required();
+  command
+      ->add_option("ESTIMATE", options->estimate,
+                   "TUM or KITTI poses, or what lilo run --poses wrote")
+      ->required();
   command
       ->add_option("TRUTH", options->truth,
                    "TUM (matched by time, interpolated) or KITTI (by row) poses, or the "

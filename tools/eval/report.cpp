@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <iterator>
+#include <numeric>
+#include <utility>
 
 namespace lilo {
 namespace {
@@ -31,11 +34,8 @@ std::string segment_table(const Evaluation& evaluation) {
   return text + segment_line("all", *evaluation.segments.overall);
 }
 
-}  // namespace
-
-Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
-                    std::vector<double> lengths_m, int step) {
-  const Matched matched = associate(estimate, truth);
+/// The figures that need no more than poses.
+Evaluation of_poses(const Matched& matched, std::vector<double> lengths_m, int step) {
   Evaluation evaluation{.matched = matched.estimate.size(), .unmatched = matched.unmatched};
   evaluation.step = step;
   evaluation.estimate_path_m = travelled_m(matched.estimate).back();
@@ -45,6 +45,59 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
   evaluation.absolute_m = absolute_error_m(matched);
   evaluation.relative = relative_error(matched);
   evaluation.closure = closure(matched);
+  return evaluation;
+}
+
+constexpr std::array kStatusNames = {"initializing", "tracking", "degraded", "lost"};
+
+std::string status_text(const Trust& trust) {
+  const std::uint64_t all = std::reduce(trust.status_counts.begin(), trust.status_counts.end());
+  std::string text;
+  for (std::size_t k = 0; k < kStatusNames.size(); ++k) {
+    if (trust.status_counts[k] == 0) continue;
+    text +=
+        fmt::format("{}{:.1f} % {}", text.empty() ? "" : ", ",
+                    100.0 * static_cast<double>(trust.status_counts[k]) / static_cast<double>(all),
+                    kStatusNames[k]);
+  }
+  return text;
+}
+
+std::string trust_text(const Trust& trust) {
+  std::string text = fmt::format("status                {}; {} session{}\n", status_text(trust),
+                                 trust.sessions, trust.sessions == 1 ? "" : "s");
+  text += trust.nees ? fmt::format("NEES                  {:.3g} over {} poses, 6 when right\n",
+                                   *trust.nees, trust.nees_count)
+                     : "NEES                  no pose of the first session has a covariance\n";
+  return text + fmt::format("false tracking        {} poses, {:.2f} % of those called tracking\n",
+                            trust.false_tracking, trust.false_tracking_percent());
+}
+
+nlohmann::ordered_json trust_json(const Trust& trust) {
+  nlohmann::ordered_json json;
+  json["sessions"] = trust.sessions;
+  for (std::size_t k = 0; k < kStatusNames.size(); ++k) {
+    json["status"][kStatusNames[k]] = trust.status_counts[k];
+  }
+  json["nees"] = trust.nees ? nlohmann::json(*trust.nees) : nlohmann::json();
+  json["nees_poses"] = trust.nees_count;
+  json["false_tracking"] = trust.false_tracking;
+  json["false_tracking_percent"] = trust.false_tracking_percent();
+  return json;
+}
+
+}  // namespace
+
+Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
+                    std::vector<double> lengths_m, int step) {
+  return of_poses(associate(estimate, truth), std::move(lengths_m), step);
+}
+
+Evaluation evaluate(const PoseStream& estimate, const Trajectory& truth,
+                    std::vector<double> lengths_m, int step) {
+  const Matched matched = associate(trajectory(estimate), truth);
+  Evaluation evaluation = of_poses(matched, std::move(lengths_m), step);
+  evaluation.trust = trust(estimate, matched);
   return evaluation;
 }
 
@@ -70,7 +123,7 @@ std::string to_text(const Evaluation& evaluation) {
   fmt::format_to(out,
                  "start to end          {:.3f} m, truth {:.3f} m; error {:.3f} m, {:.3f} deg\n",
                  closure.estimate_m, closure.truth_m, closure.error_m, closure.error_deg);
-  return text;
+  return evaluation.trust ? text + trust_text(*evaluation.trust) : text;
 }
 
 std::string to_json(const Evaluation& evaluation) {
@@ -98,6 +151,7 @@ std::string to_json(const Evaluation& evaluation) {
                      {"truth_m", evaluation.closure.truth_m},
                      {"error_m", evaluation.closure.error_m},
                      {"error_deg", evaluation.closure.error_deg}};
+  if (evaluation.trust) json["trust"] = trust_json(*evaluation.trust);
   return json.dump(2) + "\n";
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
 #include "tools/eval/metrics.hpp"
+#include "tools/eval/pose_stream.hpp"
+#include "tools/eval/trust.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,11 +19,15 @@ struct Evaluation {
   ErrorSummary absolute_m;
   RelativeError relative;
   Closure closure;
+  std::optional<Trust> trust;  ///< none where the estimate says nothing of itself
 };
 
 /// `lengths_m` empty: default_lengths_m(). `step` >= 1. Throws std::runtime_error when nothing
 /// matches.
 Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
+                    std::vector<double> lengths_m, int step);
+/// The same, and what the stream says of itself.
+Evaluation evaluate(const PoseStream& estimate, const Trajectory& truth,
                     std::vector<double> lengths_m, int step);
 
 /// For people: one figure a line.

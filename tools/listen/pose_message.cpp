@@ -17,15 +17,17 @@ using nlohmann::json;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-std::optional<PoseMessage::Deviation> deviation_from(const json& pose) {
+std::optional<Matrix6d> covariance_from(const json& pose) {
   if (!pose.contains("covariance")) return std::nullopt;
-  const json& c = pose["covariance"];
-  const auto root_of_trace = [&](std::size_t first) {
-    double trace = 0.0;
-    for (std::size_t k = first; k < first + 3; ++k) trace += c.at(7 * k).get<double>();
-    return std::sqrt(std::max(trace, 0.0));
-  };
-  return PoseMessage::Deviation{root_of_trace(0), root_of_trace(3)};
+  const auto numbers = pose["covariance"].get<std::array<double, 36>>();
+  return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(numbers.data());
+}
+
+std::optional<PoseMessage::Deviation> deviation_from(const std::optional<Matrix6d>& covariance) {
+  if (!covariance) return std::nullopt;
+  const Vector6d variances = covariance->diagonal();
+  return PoseMessage::Deviation{std::sqrt(std::max(variances.head<3>().sum(), 0.0)),
+                                std::sqrt(std::max(variances.tail<3>().sum(), 0.0))};
 }
 
 std::vector<PoseMessage::Weak> weak_from(const json& pose) {
@@ -56,7 +58,8 @@ PoseMessage message_from(const json& object) {
   message.pose.pose.rotation = Eigen::Quaterniond(q.at("w").get<double>(), q.at("x").get<double>(),
                                                   q.at("y").get<double>(), q.at("z").get<double>())
                                    .normalized();
-  message.deviation = deviation_from(pose);
+  message.covariance = covariance_from(pose);
+  message.deviation = deviation_from(message.covariance);
   message.weak = weak_from(pose);
   return message;
 }

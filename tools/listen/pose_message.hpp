@@ -10,12 +10,14 @@
 
 namespace lilo {
 
-/// What `lilo listen` shows of one pose datagram of lilod.
+/// What `lilo listen` shows and `lilo eval` judges of one pose datagram of lilod.
 struct PoseMessage {
   std::uint64_t seq = 0;
   std::string session;
   std::string status;
   StampedPose pose;
+
+  std::optional<Matrix6d> covariance;  ///< as in daemon/PROTOCOL.md; nothing: it did not say
 
   /// 1 sigma of the position and of the rotation, each the root of its block's trace.
   struct Deviation {
