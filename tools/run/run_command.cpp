@@ -4,6 +4,7 @@
 #include "tools/plot/trajectory_view.hpp"
 #include "tools/progress_bar.hpp"
 #include "tools/run/odometry_run.hpp"
+#include "tools/run/pose_log.hpp"
 #include "tools/run/run_report.hpp"
 #include "tools/text_file.hpp"
 #include "tools/tool_config.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 struct RunOptions {
   std::string input, config, profile;
-  std::string tum, kitti, stats, picture, truth, title;
+  std::string tum, kitti, poses, stats, picture, truth, title;
 };
 
 /// A result that cannot be written is better known before the work than after it.
@@ -30,11 +31,13 @@ void try_outputs(const RunOptions& options) {
   }
 }
 
-OdometryRun run_with_progress(ScanSource& source, const Config& config, MapPoints* map) {
+OdometryRun run_with_progress(ScanSource& source, const Config& config, MapPoints* map,
+                              PoseLog* log) {
   ProgressBar bar;
   std::size_t scans = 0;
   return run_odometry(source, config.odometry, [&](const Scan& scan, const Estimate& estimate) {
     ++scans;
+    if (log != nullptr) log->add(scan, estimate);
     if (map != nullptr) map->add(scan, estimate.T_odom_sensor);
     if (bar.due()) bar.show(source.progress(), fmt::format("{} scans", scans));
   });
@@ -64,9 +67,12 @@ void run_run(const RunOptions& options) {
   const Config config = tool_config(options.config, options.profile);
   const std::unique_ptr<ScanSource> source = open_scans(options.input, config.sensor);
   try_outputs(options);
+  std::optional<PoseLog> log;
+  if (!options.poses.empty()) log.emplace(options.poses, config.publish);
   MapPoints map;
-  const OdometryRun run =
-      run_with_progress(*source, config, options.picture.empty() ? nullptr : &map);
+  const OdometryRun run = run_with_progress(
+      *source, config, options.picture.empty() ? nullptr : &map, log ? &*log : nullptr);
+  if (log) log->finish();
   write_results(options, run, map);
   if (!run.poses.empty()) fmt::print("{}", to_text(run));
   if (!run.failure.empty()) throw std::runtime_error(run.failure);
@@ -88,6 +94,8 @@ void add_run_command(CLI::App& app) {
   sub->add_option("--profile", options->profile, "Odometry profile, over the configuration's");
   sub->add_option("--tum", options->tum, "Write the poses: t x y z qx qy qz qw");
   sub->add_option("--kitti", options->kitti, "Write the poses: 12 numbers, sensor frame");
+  sub->add_option("--poses", options->poses,
+                  "Write what lilod would send, a JSON object a line: status, covariance and all");
   sub->add_option("--stats", options->stats, "Write scans, losses, CPU times, memory as JSON");
   sub->add_option("--picture,--map-png", options->picture, "Draw trajectory and map from above");
   sub->add_option("--truth", options->truth,
