@@ -12,23 +12,25 @@
 namespace lilo {
 namespace {
 
-void set_profile(Config& config, const std::string& name) {
+/// The choice `name` for the key at `path`, as `option` of the command line asks.
+void choose(Config& config, const char* option, const char* path, const std::string& name) {
   const std::vector<Key> keys = config_keys();
-  const auto key = std::find_if(keys.begin(), keys.end(),
-                                [](const Key& k) { return k.path == "odometry.profile"; });
+  const auto key =
+      std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.path == path; });
   const std::vector<std::string>& known = key->choices;
   if (std::find(known.begin(), known.end(), name) == known.end()) {
     throw std::runtime_error(
-        fmt::format("--profile: expected one of {}, found {}", fmt::join(known, ", "), name));
+        fmt::format("{}: expected one of {}, found {}", option, fmt::join(known, ", "), name));
   }
   key->set(config, name);
 }
 
 }  // namespace
 
-Config tool_config(const std::string& file, const std::string& profile) {
+Config tool_config(const std::string& file, const std::string& profile, const std::string& sensor) {
   Config config = file.empty() ? Config{} : load_config(file);
-  if (!profile.empty()) set_profile(config, profile);
+  if (!profile.empty()) choose(config, "--profile", "odometry.profile", profile);
+  if (!sensor.empty()) choose(config, "--sensor", "sensor.model", sensor);
   return config;
 }
 

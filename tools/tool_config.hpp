@@ -7,8 +7,9 @@
 namespace lilo {
 
 /// The configuration a tool was asked for: a YAML file, or what is built in when `file` is empty;
-/// then the odometry profile of that name, unless that is empty. Throws std::runtime_error, one
-/// line for every mistake.
-Config tool_config(const std::string& file, const std::string& profile = {});
+/// then the odometry profile and the sensor model of those names, unless they are empty. Throws
+/// std::runtime_error, one line for every mistake.
+Config tool_config(const std::string& file, const std::string& profile = {},
+                   const std::string& sensor = {});
 
 }  // namespace lilo

@@ -20,6 +20,13 @@ TEST(ToolConfig, ReadsTheFileThenTheProfile) {
   EXPECT_EQ(config.odometry.profile, Profile::paper);
 }
 
+TEST(ToolConfig, TheCommandLinesSensorIsTheOneThatCounts) {
+  const TemporaryFile file("sensor:\n  model: vlp16\n  max_range_m: 77\n");
+  const Config config = tool_config(file.path(), "", "hdl64e");
+  EXPECT_EQ(config.sensor.model, SensorModel::hdl64e);
+  EXPECT_EQ(config.sensor.max_range_m, 77.0);
+}
+
 TEST(ToolConfig, NamesTheProfilesWhenAskedForAnother) {
   try {
     (void)tool_config("", "papper");

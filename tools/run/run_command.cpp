@@ -20,7 +20,7 @@ namespace lilo {
 namespace {
 
 struct RunOptions {
-  std::string input, config, profile;
+  std::string input, config, profile, sensor;
   std::string tum, kitti, poses, stats, picture, truth, title;
 };
 
@@ -64,7 +64,7 @@ void write_results(const RunOptions& options, const OdometryRun& run, const MapP
 }
 
 void run_run(const RunOptions& options) {
-  const Config config = tool_config(options.config, options.profile);
+  const Config config = tool_config(options.config, options.profile, options.sensor);
   const std::unique_ptr<ScanSource> source = open_scans(options.input, config.sensor);
   try_outputs(options);
   std::optional<PoseLog> log;
@@ -92,6 +92,7 @@ void add_run_command(CLI::App& app) {
       ->required();
   sub->add_option("--config", options->config, "YAML configuration; default: what is built in");
   sub->add_option("--profile", options->profile, "Odometry profile, over the configuration's");
+  sub->add_option("--sensor", options->sensor, "Sensor model, over the configuration's");
   sub->add_option("--tum", options->tum, "Write the poses: t x y z qx qy qz qw");
   sub->add_option("--kitti", options->kitti, "Write the poses: 12 numbers, sensor frame");
   sub->add_option("--poses", options->poses,
