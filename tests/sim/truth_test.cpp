@@ -168,6 +168,25 @@ TEST(SensorPath, StandsStillUntilItSetsOffAndTurnsAsFastAsAsked) {
   EXPECT_NEAR(std::acos(0.5 * (turn.trace() - 1.0)) * 180.0 / 3.14159265358979, 45.0, 0.5);
 }
 
+// At a constant rate after a ramp the turn is as if it had begun, at full rate, half way up it.
+TEST(SensorPath, BeginsToTurnWithinTheRamp) {
+  const Route route({{200.0, 0.0, 0.0}}, 60.0);
+  const Terrain flat({-100, -100, 200, 100}, 0.5, [](double, double) -> Terrain::Sample {
+    return {0.0, Material::soil};
+  });
+  for (const double ramp_s : {0.1, 1.0}) {
+    const MotionOptions motion{.speed_mps = 0.0,
+                               .duration_s = 6.0,
+                               .standstill_s = 2.0,
+                               .turn_rate_dps = 90.0,
+                               .turn_ramp_s = ramp_s};
+    const SensorPath path(motion, {.wander_m = 0.0}, route, Drive(motion, {}, route), flat);
+    const Eigen::Matrix3d turn = path.at(1.9).rotation.transpose() * path.at(3.2).rotation;
+    const double turned_deg = std::atan2(turn(1, 0), turn(0, 0)) * 180.0 / std::numbers::pi;
+    EXPECT_NEAR(turned_deg, 90.0 * (1.2 - 0.5 * ramp_s), 0.05);
+  }
+}
+
 TEST(SensorPath, ShakesAsAskedWhileItDrives) {
   const Route route({{300.0, 0.0, 0.0}}, 60.0);
   const Terrain terrain({-100, -100, 300, 100}, 0.5, [](double, double) -> Terrain::Sample {

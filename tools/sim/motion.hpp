@@ -15,6 +15,7 @@ struct MotionOptions {
   bool start_in_motion = false;  ///< at speed from the first packet on
   double standstill_s = 1.0;     ///< before setting off (not with start_in_motion)
   double turn_rate_dps = 0.0;    ///< turns on top of the route's heading, as on a turntable
+  double turn_ramp_s = 1.0;      ///< until it turns so fast
   double tilt_deg = 0.0;         ///< of the sensor on its mount, nose down
   /// A wheel or a mast that shakes the body while it drives: pitch at this frequency, roll a little
   /// slower, and the root mean square of each one's rate.

@@ -27,10 +27,11 @@ Stance stance_at(const MotionOptions& options, const Vehicle& vehicle, const Rou
   const double left = drift(arc);
   const double slope = (drift(arc + 0.5) - drift(arc - 0.5)) / 1.0;  // heading follows the drift
   const Vec3 at = p.beside(left);
-  // The turntable speeds up over one second, so that its rate is continuous.
-  const double ramp = std::clamp(time_s - options.standstill_s, 0.0, 1.0);
+  // The turntable speeds up over a while, so that its rate is continuous.
+  const double turning_s = time_s - options.standstill_s, ramp_s = options.turn_ramp_s;
+  const double ramp = std::clamp(turning_s / ramp_s, 0.0, 1.0);
   const double turned =
-      std::max(0.0, time_s - options.standstill_s - 1.0) + ramp * ramp * ramp * (1.0 - 0.5 * ramp);
+      std::max(0.0, turning_s - ramp_s) + ramp_s * (ramp * ramp * ramp * (1.0 - 0.5 * ramp));
   const double spin = options.turn_rate_dps * std::numbers::pi / 180.0 * turned;
   return {at.x(), at.y(), p.yaw_rad + slope + spin};
 }

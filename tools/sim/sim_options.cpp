@@ -67,6 +67,8 @@ void add_motion(CLI::App& command, SimOptions& options) {
       ->capture_default_str();
   group.number("--turn-rate-dps", motion.turn_rate_dps, -400.0, 400.0,
                "Turns as well; with --speed-mps 0 on the spot");
+  group.number("--turn-ramp-s", motion.turn_ramp_s, 0.05, 60.0, "Until it turns so fast")
+      ->capture_default_str();
   group.number("--tilt-deg", motion.tilt_deg, -45.0, 45.0, "Sensor mounted nose down");
   group.number("--shake-dps", motion.shake_dps, 0.0, 90.0,
                "Rate, rms, at which wheels or mast shake it while it drives");
