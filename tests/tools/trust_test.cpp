@@ -77,6 +77,16 @@ TEST(Nees, EndsWithTheFirstSessionAndSkipsWhatIsNotSaid) {
   EXPECT_EQ(trust.sessions, 2);
 }
 
+TEST(Nees, OfPosesCalledTrackingIsToldApart) {
+  Drive drive(5);
+  drive.spoil_from(1, {Eigen::Quaterniond::Identity(), {1.0, 0.0, 0.0}});
+  drive.spoil_from(4, {Eigen::Quaterniond::Identity(), {2.0, 0.0, 0.0}});
+  for (SaidPose& said : drive.estimate.poses) said.covariance = Matrix6d::Identity();
+  drive.estimate.poses[4].status = TrackingStatus::lost;
+  EXPECT_NEAR(*drive.judged().nees, (1.0 + 1.0 + 1.0 + 9.0) / 4.0, 1e-9);
+  EXPECT_NEAR(*drive.judged().nees_tracking, 1.0, 1e-9);
+}
+
 TEST(FalseTracking, IsCountedUntilTheErrorLiesTenMetresBack) {
   Drive drive(100);
   drive.spoil_from(50, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 1.001}});
@@ -181,7 +191,8 @@ TEST(Trust, IsPartOfTheReport) {
   EXPECT_NEAR(json["nees"].get<double>(), 10 * 4.0 / 59, 1e-9);
   EXPECT_EQ(json["status"]["tracking"], 60);
   const std::string text = to_text(evaluation);
-  for (const char* part : {"100.0 % tracking; 1 session\n", "0.678 over 59 poses, 6 when right\n",
+  for (const char* part : {"100.0 % tracking; 1 session\n",
+                           "0.678 over 59 poses, 6 when right; 0.678 where tracking\n",
                            "10 poses, 16.67 % of those called tracking\n"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
   }

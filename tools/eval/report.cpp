@@ -66,9 +66,11 @@ std::string status_text(const Trust& trust) {
 std::string trust_text(const Trust& trust) {
   std::string text = fmt::format("status                {}; {} session{}\n", status_text(trust),
                                  trust.sessions, trust.sessions == 1 ? "" : "s");
-  text += trust.nees ? fmt::format("NEES                  {:.3g} over {} poses, 6 when right\n",
+  text += trust.nees ? fmt::format("NEES                  {:.3g} over {} poses, 6 when right",
                                    *trust.nees, trust.nees_count)
-                     : "NEES                  no pose of the first session has a covariance\n";
+                     : "NEES                  no pose of the first session has a covariance";
+  if (trust.nees_tracking) text += fmt::format("; {:.3g} where tracking", *trust.nees_tracking);
+  text += '\n';
   return text + fmt::format("false tracking        {} poses, {:.2f} % of those called tracking\n",
                             trust.false_tracking, trust.false_tracking_percent());
 }
@@ -81,6 +83,8 @@ nlohmann::ordered_json trust_json(const Trust& trust) {
   }
   json["nees"] = trust.nees ? nlohmann::json(*trust.nees) : nlohmann::json();
   json["nees_poses"] = trust.nees_count;
+  json["nees_tracking"] =
+      trust.nees_tracking ? nlohmann::json(*trust.nees_tracking) : nlohmann::json();
   json["false_tracking"] = trust.false_tracking;
   json["false_tracking_percent"] = trust.false_tracking_percent();
   return json;

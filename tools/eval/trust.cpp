@@ -31,18 +31,34 @@ std::optional<double> normalized_square(const Pose& error, const Matrix6d& covar
   return along.cwiseAbs2().cwiseQuotient(solver.eigenvalues().cwiseMax(kLeastCorrelation)).sum();
 }
 
-void add_nees(const PoseStream& estimate, const Matched& matched, Trust& trust) {
+/// Sums until mean().
+struct Mean {
   double sum = 0.0;
+  int count = 0;
+
+  void add(double value) {
+    sum += value;
+    ++count;
+  }
+  [[nodiscard]] std::optional<double> mean() const {
+    return count > 0 ? std::optional(sum / count) : std::nullopt;
+  }
+};
+
+void add_nees(const PoseStream& estimate, const Matched& matched, Trust& trust) {
+  Mean all, tracking;
   for (std::size_t k = 1; k < matched.rows.size(); ++k) {
     const SaidPose& said = estimate.poses[matched.rows[k]];
     if (said.session != 0) break;
     if (!said.covariance) continue;
     if (const auto square = normalized_square(motion_error(matched, 0, k), *said.covariance)) {
-      sum += *square;
-      ++trust.nees_count;
+      all.add(*square);
+      if (said.status == TrackingStatus::tracking) tracking.add(*square);
     }
   }
-  if (trust.nees_count > 0) trust.nees = sum / trust.nees_count;
+  trust.nees = all.mean();
+  trust.nees_count = all.count;
+  trust.nees_tracking = tracking.mean();
 }
 
 bool is_wrong(const Pose& error) {

@@ -15,6 +15,7 @@ struct Trust {
   std::array<std::uint64_t, 4> status_counts{};  ///< poses, by TrackingStatus
   std::optional<double> nees;                    ///< none where no pose counts for it
   int nees_count = 0;                            ///< poses it is the mean of
+  std::optional<double> nees_tracking;           ///< the same of those with status `tracking`
   std::uint64_t false_tracking = 0;              ///< poses
 
   /// Of the poses whose status is `tracking`; 0 where there are none.
