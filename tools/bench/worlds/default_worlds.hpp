@@ -1,0 +1,8 @@
+#pragma once
+
+namespace lilo::worlds {
+
+/// The text of worlds.yaml.
+extern const char* const kDefaultWorlds;
+
+}  // namespace lilo::worlds
