@@ -2,6 +2,7 @@
 
 #include "tools/bench/paired_report.hpp"
 #include "tools/bench/paper/paper_bench.hpp"
+#include "tools/bench/worlds/worlds_command.hpp"
 #include "tools/cli.hpp"
 #include "tools/progress_bar.hpp"
 #include "tools/stop_signals.hpp"
@@ -80,6 +81,7 @@ void add_bench_command(CLI::App& app) {
   sub->add_option("--scans", options->most_scans, "Only so many scans of every set");
   sub->add_flag("--json", options->json, "Print one JSON object");
   add_paper_command(*sub, options);
+  add_worlds_command(*sub);
   sub->callback([options, sub] {
     if (!sub->get_subcommands().empty()) return;
     if (options->paths.empty()) throw CLI::RequiredError("bench: DIR");

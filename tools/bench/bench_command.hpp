@@ -4,7 +4,8 @@
 
 namespace lilo {
 
-/// `lilo bench`: times of the two profiles, paired; `lilo bench paper`: the paper's experiments.
+/// `lilo bench`: times of the two profiles, paired; `lilo bench paper`: the paper's experiments;
+/// `lilo bench worlds`: many worlds.
 void add_bench_command(CLI::App& app);
 
 }  // namespace lilo

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace lilo {
+
+/// `lilo bench worlds`: one configuration over many recordings, or two side by side.
+void add_worlds_command(CLI::App& bench);
+
+}  // namespace lilo
