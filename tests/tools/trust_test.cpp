@@ -127,6 +127,35 @@ TEST(FalseTracking, ANewSessionIsAnAnnouncedBreak) {
   EXPECT_EQ(drive.judged().false_tracking, 10U);
 }
 
+// Lost for 10 poses and wrong there, found again: the errors of the lost ones are no fault of those
+// after them.
+TEST(FalseTracking, WhoIsFoundAgainIsRight) {
+  Drive drive(100);
+  for (int k = 40; k < 50; ++k) {
+    drive.pose(k).translation_m.z() += 5.0;
+    drive.estimate.poses[static_cast<std::size_t>(k)].status = TrackingStatus::lost;
+  }
+  EXPECT_EQ(drive.judged().false_tracking, 0U);
+}
+
+// Lost for 20 poses and found at a wrong place, without a new session.
+TEST(FalseTracking, WhoIsFoundElsewhereIsWrong) {
+  Drive drive(100);
+  for (std::size_t k = 40; k < 60; ++k) drive.estimate.poses[k].status = TrackingStatus::lost;
+  drive.spoil_from(60, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 5.0}});
+  EXPECT_EQ(drive.judged().false_tracking, 10U);
+}
+
+// Drift that was announced all the way, 4 m within 40 poses, is not held against who tracks again.
+TEST(FalseTracking, AnnouncedDriftIsForgiven) {
+  Drive drive(100);
+  for (int k = 40; k < 80; ++k) {
+    drive.spoil_from(k, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.09}});
+    drive.estimate.poses[static_cast<std::size_t>(k)].status = TrackingStatus::degraded;
+  }
+  EXPECT_EQ(drive.judged().false_tracking, 0U);
+}
+
 TEST(FalseTracking, AtStandstillIsSeenFromTheFirstPose) {
   Drive drive(30);
   for (std::size_t k = 0; k < 30; ++k) {

@@ -71,13 +71,18 @@ void count_false_tracking(const PoseStream& estimate, const Matched& matched, Tr
   const auto said = [&](std::size_t k) -> const SaidPose& {
     return estimate.poses[matched.rows[k]];
   };
-  std::size_t session_begin = 0, since = 0;
+  std::size_t session_begin = 0, since = 0, since_tracked = 0;
   for (std::size_t k = 0; k < matched.rows.size(); ++k) {
-    if (said(k).session != said(session_begin).session) session_begin = k;
-    since = std::max(since, session_begin);
-    while (since + 1 <= k && distance_m[k] - distance_m[since + 1] >= kFalseTrackingPath_m) ++since;
-    const bool claims = said(k).status == TrackingStatus::tracking;
-    if (claims && is_wrong(motion_error(matched, since, k))) ++trust.false_tracking;
+    if (said(k).session != said(session_begin).session) {
+      session_begin = since = since_tracked = k;
+    }
+    while (since < k && distance_m[k] - distance_m[since + 1] >= kFalseTrackingPath_m) {
+      if (said(++since).status == TrackingStatus::tracking) since_tracked = since;
+    }
+    if (said(k).status != TrackingStatus::tracking) continue;
+    const bool wrong = is_wrong(motion_error(matched, since, k)) &&
+                       is_wrong(motion_error(matched, since_tracked, k));
+    if (wrong) ++trust.false_tracking;
   }
 }
 

@@ -33,7 +33,9 @@ struct Trust {
 ///
 /// False tracking: the status is `tracking` and the motion over the last 10 m of true path is wrong
 /// by more than 1 m or 3 degrees. It is that since the last pose at least 10 m before, but never
-/// since one of another session: a session's first pose stands in for it.
+/// since one of another session: a session's first pose stands in for it. Where that pose was not
+/// tracked, its own error is no fault of this one: the motion since the last tracked pose at least
+/// 10 m before must be wrong as well.
 Trust trust(const PoseStream& estimate, const Matched& matched);
 
 inline constexpr double kFalseTrackingPath_m = 10.0, kFalseTracking_m = 1.0,
