@@ -41,8 +41,7 @@ std::vector<Key> sensor_keys() {
       angle("sensor.kitti_elevation_offset_deg", LILO_MEMBER(sensor.kitti_elevation_offset_rad),
             -1.0, 1.0, kRestart,
             "KITTI folders only, for the tools: added to the elevation of every return; 0.205 "
-            "corrects the data set's calibration as IMLS-SLAM found it. Scans of KITTI folders are "
-            "deskewed already and are not deskewed again."),
+            "corrects the data set's calibration as IMLS-SLAM found it."),
   };
 }
 

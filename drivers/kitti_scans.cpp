@@ -1,6 +1,7 @@
 #include "drivers/kitti_scans.hpp"
 
 #include "drivers/kitti_rings.hpp"
+#include "drivers/kitti_sweeps.hpp"
 #include "drivers/kitti_times.hpp"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 namespace lilo {
@@ -40,21 +42,24 @@ std::vector<Entry> list_scans(const fs::path& folder) {
   return entries;
 }
 
-// Where the scans of the folder a user names are, and the file with their times.
+// Where the scans of the folder a user names are. Of a raw drive also velodyne_points, else the
+// file with their times.
 struct Layout {
-  fs::path scans, times;
+  fs::path scans, times, raw;
 };
 
 Layout layout_of(const fs::path& folder) {
-  if (fs::is_directory(folder / "velodyne")) return {folder / "velodyne", folder / "times.txt"};
+  if (fs::is_directory(folder / "velodyne")) return {folder / "velodyne", folder / "times.txt", {}};
   const fs::path raw = folder / "velodyne_points";
-  if (fs::is_directory(raw / "data")) return {raw / "data", raw / "timestamps.txt"};
-  fs::path times;
-  for (const fs::path& file :
-       {folder / "times.txt", folder / ".." / "times.txt", folder / ".." / "timestamps.txt"}) {
-    if (times.empty() && fs::is_regular_file(file)) times = file;
+  if (fs::is_directory(raw / "data")) return {raw / "data", {}, raw};
+  for (const fs::path& file : {folder / "times.txt", folder / ".." / "times.txt"}) {
+    if (fs::is_regular_file(file)) return {folder, file, {}};
   }
-  return {folder, times};
+  const fs::path above = folder / "..";
+  for (const char* name : {"timestamps.txt", "timestamps_start.txt", "timestamps_end.txt"}) {
+    if (fs::is_regular_file(above / name)) return {folder, {}, above};
+  }
+  return {folder, {}, {}};
 }
 
 // Turns every ray up by `angle_rad` in its own vertical plane. IMLS-SLAM, CT-ICP and KISS-ICP do
@@ -98,25 +103,33 @@ class KittiScans final : public ScanSource {
     scans_ = list_scans(layout.scans);
     if (scans_.empty())
       throw DriverError(folder.string() + ": expected scans named NNNNNN.bin, found none");
-    times_ns_ = read_kitti_times(layout.times);
+    if (layout.raw.empty()) {
+      find_instants(read_kitti_times(layout.times));
+      return;
+    }
+    std::vector<std::uint64_t> numbers;
+    for (const Entry& entry : scans_) numbers.push_back(entry.number);
+    sweeps_ = kitti_sweeps(layout.raw, numbers);
+    as_measured_ = true;
   }
 
   bool next(Scan& scan) override {
     if (position_ == scans_.size()) return false;
-    const Entry& entry = scans_[position_++];
+    const Entry& entry = scans_[position_];
+    const KittiSweep& sweep = sweeps_[position_];
+    ++position_;
     scan.clear();
     scan.index = entry.number - scans_.front().number;
-    scan.end_ns = entry.number < times_ns_.size()
-                      ? times_ns_[entry.number]
-                      : static_cast<std::int64_t>(scan.index) * kScanPeriodNs;
-    scan.start_ns = scan.end_ns - kScanPeriodNs;
+    scan.start_ns = sweep.start_ns;
+    scan.end_ns = sweep.end_ns;
     scan.clock = ClockSource::replay;
-    scan.motion_compensated = true;
+    scan.motion_compensated = !as_measured_;
     scan.complete = read_points(entry.file, scan.returns);
     scan.coverage_rad = scan.complete ? 2.0F * std::numbers::pi_v<float> : 0.0F;
     recover_kitti_rings(scan.returns, scan.beams);
     raise_rays(scan.returns, scan.beams, config_.kitti_elevation_offset_rad);
     keep_in_range(scan.returns);
+    if (as_measured_) time_kitti_returns(scan.returns, scan.end_ns - scan.start_ns);
     ++(scan.complete ? counts_.scans_complete : counts_.scans_partial);
     return true;
   }
@@ -128,6 +141,17 @@ class KittiScans final : public ScanSource {
   [[nodiscard]] std::string error() const override { return error_; }
 
  private:
+  // The instant all points were moved to; the turn before it is of no use to anyone.
+  void find_instants(const KittiTimes& times_ns) {
+    for (const Entry& entry : scans_) {
+      const std::optional<std::int64_t> time_ns =
+          entry.number < times_ns.size() ? times_ns[entry.number] : std::nullopt;
+      const auto steps = static_cast<std::int64_t>(entry.number - scans_.front().number);
+      const std::int64_t end_ns = time_ns.value_or(steps * kScanPeriodNs);
+      sweeps_.push_back({end_ns - kScanPeriodNs, end_ns});
+    }
+  }
+
   bool read_points(const fs::path& file, Returns& returns) {
     std::ifstream in(file, std::ios::binary);
     buffer_.resize(in ? fs::file_size(file) : 0);
@@ -157,7 +181,8 @@ class KittiScans final : public ScanSource {
 
   SensorConfig config_;
   std::vector<Entry> scans_;
-  std::vector<std::int64_t> times_ns_;
+  std::vector<KittiSweep> sweeps_;  // one a scan
+  bool as_measured_ = false;        // else the points were moved to the sweep's end
   std::vector<char> buffer_;
   std::size_t position_ = 0;
   DriverCounts counts_;

@@ -64,14 +64,17 @@ std::optional<std::int64_t> from_date(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::int64_t> read_kitti_times(const std::filesystem::path& file) {
-  std::vector<std::int64_t> times_ns;
+KittiTimes read_kitti_times(const std::filesystem::path& file) {
+  KittiTimes times_ns;
   std::ifstream in(file);
   std::size_t number = 0;
   for (std::string line; std::getline(in, line);) {
     ++number;
     const std::size_t begin = line.find_first_not_of(" \t\r");
-    if (begin == std::string::npos) continue;
+    if (begin == std::string::npos) {
+      times_ns.emplace_back();
+      continue;
+    }
     const std::size_t end = line.find_last_not_of(" \t\r") + 1;
     const std::string_view text = std::string_view(line).substr(begin, end - begin);
     auto time_ns = from_seconds(text);
@@ -80,7 +83,7 @@ std::vector<std::int64_t> read_kitti_times(const std::filesystem::path& file) {
       throw DriverError(file.string() + ":" + std::to_string(number) +
                         ": expected a time in seconds, or date and time, found \"" + line + "\"");
     }
-    times_ns.push_back(*time_ns);
+    times_ns.push_back(time_ns);
   }
   return times_ns;
 }

@@ -66,11 +66,12 @@ std::int64_t first_scan(const fs::path& folder) {
   return first.value_or(0);
 }
 
-void set_times(Trajectory& truth, const std::vector<std::int64_t>& times_ns, std::int64_t first) {
+void set_times(Trajectory& truth, const KittiTimes& times_ns, std::int64_t first) {
   truth.has_times = true;
   for (std::size_t k = 0; k < truth.poses.size(); ++k) {
+    const std::optional<std::int64_t> time_ns = k < times_ns.size() ? times_ns[k] : std::nullopt;
     truth.poses[k].stamp_ns =
-        k < times_ns.size() ? times_ns[k] : (static_cast<std::int64_t>(k) - first) * kScanPeriod_ns;
+        time_ns.value_or((static_cast<std::int64_t>(k) - first) * kScanPeriod_ns);
   }
 }
 
@@ -149,7 +150,7 @@ Trajectory kitti_raw_truth(const std::string& folder) {
     truth.poses.push_back({0, T_start_world * imu_pose(file, scale) * T_imu_sensor});
   }
   // Without the scans' own times both are counted in steps.
-  std::vector<std::int64_t> times_ns;
+  KittiTimes times_ns;
   if (fs::is_regular_file(root / "velodyne_points" / "timestamps.txt")) {
     times_ns = read_kitti_times(root / "oxts" / "timestamps.txt");
   }

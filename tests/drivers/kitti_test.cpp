@@ -146,27 +146,6 @@ void write_points(const std::string& file, const std::vector<float>& numbers) {
             static_cast<std::streamsize>(numbers.size() * sizeof(float)));
 }
 
-/// 2011-09-26 13:02:25 UTC is 1317042145 s, says `date -u -d ... +%s`.
-TEST(KittiScans, ARawDriveHasDatesForTimes) {
-  const std::string drive = fresh_folder("2011_09_26_drive_0001_sync");
-  fs::create_directories(drive + "/velodyne_points/data");
-  for (const char* name : {"0000000000.bin", "0000000001.bin"})
-    write_points(drive + "/velodyne_points/data/" + name, {5, 0, 0, 0.5F});
-  std::ofstream(drive + "/velodyne_points/timestamps.txt")
-      << "2011-09-26 13:02:25.594360375\n2011-09-26 13:02:26.000000001\n";
-  for (const std::string& path : {drive, drive + "/velodyne_points/data"}) {
-    auto source = open_scans(path, {});
-    Scan scan;
-    ASSERT_TRUE(source->next(scan));
-    EXPECT_EQ(scan.end_ns, 1'317'042'145'594'360'375);
-    EXPECT_TRUE(scan.motion_compensated);
-    ASSERT_TRUE(source->next(scan));
-    EXPECT_EQ(scan.end_ns, 1'317'042'146'000'000'001);
-  }
-  std::ofstream(drive + "/velodyne_points/timestamps.txt") << "2011-13-26 13:02:25.5\n";
-  EXPECT_NE(refusal(drive).find("timestamps.txt:1: expected a time"), std::string::npos);
-}
-
 TEST(KittiScans, TheElevationOffsetRaisesEveryRayAndKeepsRangeAndAzimuth) {
   const std::string folder = fresh_folder("raised");
   write_points(folder + "/000000.bin", {10, 0, 0, 0, -3, 4, -2, 0, 1, -1, 30, 0, 0, 0, 7, 0});

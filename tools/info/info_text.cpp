@@ -207,7 +207,9 @@ std::string losses_text(const RecordingInfo& info) {
 }
 
 std::string data_set_text(const RecordingInfo& info) {
-  return line("holds", "scans of a data set, motion-compensated by its authors") +
+  const std::string points = info.motion_compensated ? "motion-compensated by its authors"
+                                                     : "as measured, with times by azimuth";
+  return line("holds", "scans of a data set, " + points) +
          line("recorded", fmt::format("{:.1f} s", seconds(info.last_ns - info.first_ns))) +
          line("scans", scans_text(info));
 }

@@ -17,6 +17,7 @@ void add_scan(const Scan& scan, const ReceivedSpan& received, RecordingInfo& inf
         seconds(received.last_ns - received.first_ns) - seconds(scan.end_ns - scan.start_ns);
   }
   info.last_ns = scan.end_ns;
+  info.motion_compensated = scan.motion_compensated;
   ++info.scans;
   ++info.clock_scans[static_cast<std::size_t>(scan.clock)];
   info.returns += scan.returns.size();

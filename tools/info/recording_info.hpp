@@ -30,6 +30,7 @@ struct RecordingInfo {
 
   std::array<bool, 3> return_modes{};          ///< seen, by ReturnMode
   std::array<std::uint64_t, 3> clock_scans{};  ///< scans by ClockSource
+  bool motion_compensated = false;             ///< the last scan's, Scan::motion_compensated
   std::uint64_t scans = 0;                     ///< whole and partial ones
   std::uint64_t returns = 0;                   ///< in all scans
   int rings = 0;
