@@ -100,7 +100,8 @@ std::vector<Key> default_profile_keys() {
            300.0, "m", kRestart, "Farther parts of the map are forgotten."),
       real("odometry.default.cell_m", LILO_MEMBER(odometry.standard.cell_m), 0.1, 2.0, "m",
            kRestart,
-           "Size of a map cell; a surface is fitted over three of them. Smaller indoors."),
+           "Size of a map cell; a surface is fitted over three of them. Smaller indoors, with a "
+           "smaller map_radius_m."),
       real("odometry.default.keyframe_m", LILO_MEMBER(odometry.standard.keyframe_m), 0.01, 10.0,
            "m", kRestart, "The map grows when the sensor has moved so far since it last grew."),
       angle("odometry.default.keyframe_deg", LILO_MEMBER(odometry.standard.keyframe_rad), 0.1, 45.0,

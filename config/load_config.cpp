@@ -1,10 +1,13 @@
 #include "config/config.hpp"
 #include "config/key.hpp"
 #include "config/yaml_reader.hpp"
+#include "core/standard/cell_table.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -37,30 +40,59 @@ std::string to_line(const std::string& path, const ConfigProblem& problem) {
   return where + (problem.key.empty() ? "" : problem.key + ": ") + problem.text;
 }
 
+// A contradiction stands where the first of its keys does that is in the file; one between defaults
+// cannot be.
+struct Contradiction {
+  std::vector<std::string> keys;
+  std::string text;
+};
+
+// The map forgets what is farther than its radius, and gets points as far away as returns are used.
+void check_map(const Config& c, std::vector<Contradiction>& found) {
+  const double cell_m = c.odometry.standard.cell_m;
+  const double radius_m = c.odometry.standard.map_radius_m;
+  const double range_m = std::min(c.odometry.max_range_m, c.sensor.max_range_m);
+  const double reach_m = radius_m + std::max(radius_m, range_m);
+  constexpr int kCells = standard::CellTable::kSafeLevels;
+  if (reach_m <= kCells * cell_m) return;
+  found.push_back(
+      {{"odometry.default.cell_m", "odometry.default.map_radius_m", "odometry.max_range_m",
+        "sensor.max_range_m"},
+       fmt::format("expected at least {:.4f} with odometry.default.map_radius_m {} and returns "
+                   "from up to {} m (max_range_m), found {}",
+                   std::ceil(1e4 * reach_m / kCells) * 1e-4, radius_m, range_m, cell_m)});
+}
+
 // Rules between keys. Each key by itself is already in its range.
-std::vector<ConfigProblem> contradictions(const Config& c) {
-  std::vector<ConfigProblem> found;
-  const auto require = [&](bool holds, const char* key, std::string text) {
-    if (!holds) found.push_back({.key = key, .text = std::move(text)});
+std::vector<Contradiction> contradictions(const Config& c) {
+  std::vector<Contradiction> found;
+  const auto require = [&](bool holds, std::vector<std::string> keys, std::string text) {
+    if (!holds) found.push_back({std::move(keys), std::move(text)});
   };
-  require(c.sensor.min_range_m < c.sensor.max_range_m, "sensor.min_range_m",
+  require(c.sensor.min_range_m < c.sensor.max_range_m, {"sensor.min_range_m", "sensor.max_range_m"},
           fmt::format("expected less than sensor.max_range_m ({}), found {}", c.sensor.max_range_m,
                       c.sensor.min_range_m));
-  require(c.odometry.min_range_m < c.odometry.max_range_m, "odometry.min_range_m",
+  require(c.odometry.min_range_m < c.odometry.max_range_m,
+          {"odometry.min_range_m", "odometry.max_range_m"},
           fmt::format("expected less than odometry.max_range_m ({}), found {}",
                       c.odometry.max_range_m, c.odometry.min_range_m));
-  require(c.udp.data_port != c.udp.position_port, "udp.position_port",
+  require(c.udp.data_port != c.udp.position_port, {"udp.position_port", "udp.data_port"},
           fmt::format("expected another port than udp.data_port, found {}", c.udp.position_port));
+  check_map(c, found);
   return found;
 }
 
-// A contradiction stands where its key does; one between defaults cannot be.
-void place(ConfigProblem& problem, const std::vector<ConfigEntry>& entries) {
-  for (const ConfigEntry& entry : entries) {
-    if (entry.key->path != problem.key) continue;
-    problem.line = entry.line;
-    problem.column = entry.column;
+ConfigProblem placed(const Contradiction& c, const std::vector<ConfigEntry>& entries) {
+  ConfigProblem problem{.key = c.keys.front(), .text = c.text};
+  for (const std::string& key : c.keys) {
+    const auto entry = std::find_if(entries.begin(), entries.end(),
+                                    [&](const ConfigEntry& e) { return e.key->path == key; });
+    if (entry == entries.end()) continue;
+    problem.line = entry->line;
+    problem.column = entry->column;
+    break;
   }
+  return problem;
 }
 
 void resolve_paths(const std::string& config_path, Config& config) {
@@ -78,8 +110,9 @@ Config load_config(const std::string& path) {
   Config config;
   for (const ConfigEntry& entry : yaml.entries) entry.key->set(config, entry.value);
   if (yaml.problems.empty()) {
-    yaml.problems = contradictions(config);
-    for (ConfigProblem& problem : yaml.problems) place(problem, yaml.entries);
+    for (const Contradiction& found : contradictions(config)) {
+      yaml.problems.push_back(placed(found, yaml.entries));
+    }
   }
   if (!yaml.problems.empty()) {
     std::string lines;

@@ -20,6 +20,12 @@ struct CellIndex {
 class CellTable {
  public:
   static constexpr std::int32_t kNone = -1;
+  /// Height of the window, its smallest side. A cell so far above the middle that the way round the
+  /// window is the shorter one seems to lie below it, this height less its own distance away.
+  /// Whoever forgets what is farther than a radius forgets that cell too if the radius and the
+  /// cell's distance together are less than the height; one cell of each is rounding.
+  static constexpr std::int32_t kLevels = 1024;
+  static constexpr std::int32_t kSafeLevels = kLevels - 2;
 
   struct Slot {
     std::int32_t at = kNone;  ///< the cell's number; kNone: empty
@@ -106,6 +112,7 @@ class CellTable {
  private:
   // Of a tag, from the lowest: x, y, and how high the cell lies.
   static constexpr int kAcrossBits = 11, kLevelBits = 10;
+  static_assert(kLevels == 1 << kLevelBits && kLevelBits < kAcrossBits);
   // How many cells lie side by side.
   static constexpr int kBlockBits = 2;
   static constexpr std::size_t kLevelSlots = 1U << (2 * kBlockBits);

@@ -79,6 +79,13 @@ TEST(LoadConfig, CalibrationFileIsRelativeToTheConfiguration) {
   EXPECT_EQ(load_config(file.path()).sensor.calibration_file, folder / "unit/db.xml");
 }
 
+TEST(LoadConfig, TakesCellsJustLargeEnoughForTheMap) {
+  EXPECT_EQ(errors_of("odometry:\n  default:\n    cell_m: 0.196\n"), "");
+  EXPECT_EQ(errors_of("odometry:\n  max_range_m: 20\n  default:\n    cell_m: 0.1\n"
+                      "    map_radius_m: 51\n"),
+            "");
+}
+
 TEST(LoadConfig, MissingFileIsOneLine) {
   try {
     load_config("/nonexistent/x.yaml");
@@ -165,6 +172,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "3:1: expected YAML, found: end of sequence flow not found"},
         BadCase{"Contradiction", "sensor:\n  min_range_m: 9\n  max_range_m: 8\n",
                 "2:16: sensor.min_range_m: expected less than sensor.max_range_m (8), found 9"},
+        // 100 m of radius and 100 m of range are 200 m, or 1022 cells of 0.1957 m.
+        BadCase{"CellsTooSmallForTheMap", "odometry:\n  default:\n    cell_m: 0.195\n",
+                "3:13: odometry.default.cell_m: expected at least 0.1957 with "
+                "odometry.default.map_radius_m 100 and returns from up to 100 m (max_range_m), "
+                "found 0.195"},
+        BadCase{"MapTooWideForItsCells", "odometry:\n  default:\n    map_radius_m: 300\n",
+                "3:19: odometry.default.cell_m: expected at least 0.5871 with "
+                "odometry.default.map_radius_m 300 and returns from up to 100 m (max_range_m), "
+                "found 0.5"},
         BadCase{
             "AllAtOnce", "udp:\n  data_port: 0\n  nonsense_here: 1\nrealtime:\n  ring_slots: 1\n",
             "2:14: udp.data_port: expected a whole number from 1 to 65535, found 0\n"

@@ -159,6 +159,22 @@ TEST_F(Filled, ForgetsWhatIsFarAndFindsTheRest) {
   }
 }
 
+// As far as load_config() lets them be: the radius and the farthest point together are as many
+// cells as the tags' window is high.
+TEST_F(Filled, ForgetsWhatIsFarUpToTheWindowOfTheTags) {
+  const auto farthest = static_cast<int>(0.5 * CellTable::kSafeLevels - 100.0);
+  for (int way_m = 101; way_m < farthest; ++way_m) {
+    for (const double sign : {-1.0, 1.0}) {
+      map_.insert({sign * way_m, 0.25, 0.25}, no_reach_);
+      map_.insert({0.25, sign * way_m, 0.25}, no_reach_);
+      map_.insert({0.25, 0.25, sign * way_m}, no_reach_);
+    }
+  }
+  EXPECT_GT(map_.size(), 1500);
+  for (int turn = 0; turn < 100; ++turn) map_.forget_beyond({0.0, 0.0, 0.0}, 100.0);
+  EXPECT_EQ(map_.size(), 0);
+}
+
 TEST(CellMap, RefusesCellsBeyondItsCapacityAndCountsThem) {
   CellMap map({.capacity = 10});
   for (int k = 0; k < 25; ++k) map.insert({2.0 * k, 0.0, 0.0}, Eigen::Vector3f::Zero());
