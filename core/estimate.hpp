@@ -52,9 +52,12 @@ struct Estimate {
 
   int edge_count = 0, surface_count = 0, ground_count = 0;  ///< features used
   int map_edge_count = 0, map_surface_count = 0;  ///< in the local map (default: before it)
-  int correspondence_count = 0;                   ///< residuals of the last iteration
-  int iterations = 0;                             ///< Gauss-Newton steps taken
-  double residual_rms_m = 0.0;                    ///< of the last iteration (profile paper)
+  /// Points that would have made a new cell of a map that was full, since the odometry began. They
+  /// were left out.
+  std::uint64_t map_refused_count = 0;
+  int correspondence_count = 0;     ///< residuals of the last iteration
+  int iterations = 0;               ///< Gauss-Newton steps taken
+  double residual_rms_m = 0.0;      ///< of the last iteration (profile paper)
   double residual_rms_sigma = 0.0;  ///< the same in units of what the map expects (default)
 };
 

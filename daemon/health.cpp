@@ -72,6 +72,7 @@ std::string_view write(const std::string& session, const Health& h, bool with_st
   out.number("sensor_silent_s", h.sensor_silent_s, 1);
   write_packets(out, h);
   write_scans(out, h);
+  out.unsigned_integer("map_refused", h.map_refused);
   out.unsigned_integer("poses_sent", h.poses_sent);
   out.unsigned_integer("poses_not_sent", h.poses_not_sent);
   out.unsigned_integer("send_errors", h.send_errors);
@@ -160,6 +161,7 @@ Complaints complaints(const Health& h) {
   if (h.status == TrackingStatus::degraded) out.emplace_back("degraded");
   if (h.driver.packets_lost > 0) out.emplace_back("packets lost");
   if (h.scans_dropped > 0) out.emplace_back("scans dropped");
+  if (h.map_refused > 0) out.emplace_back("map full");
   if (!h.realtime.refusals.empty()) out.emplace_back("real time refused");
   if (h.config_error) out.emplace_back("configuration file bad");
   if (h.metrics_error) out.emplace_back("metrics file not written");
@@ -190,6 +192,7 @@ void write_prometheus(const std::string& session, const Health& h, std::string& 
   m.counter("lilo_scans_complete_total", "Whole revolutions.", d(h.driver.scans_complete));
   m.counter("lilo_scans_partial_total", "Revolutions with a hole.", d(h.driver.scans_partial));
   m.counter("lilo_scans_dropped_total", "Revolutions given up to keep up.", d(h.scans_dropped));
+  m.counter("lilo_map_refused_total", "Points the full map had no room for.", d(h.map_refused));
   m.counter("lilo_poses_sent_total", "Poses published.", d(h.poses_sent));
   m.counter("lilo_poses_not_sent_total", "Poses that could not be.", d(h.poses_not_sent));
   m.counter("lilo_send_errors_total", "Datagrams the socket refused.", d(h.send_errors));

@@ -28,6 +28,7 @@ struct Health {
   DriverCounts driver;
   SourceCounts source;
   std::uint64_t scans_processed = 0, scans_dropped = 0;
+  std::uint64_t map_refused = 0;  ///< Estimate::map_refused_count
   std::uint64_t poses_sent = 0, poses_not_sent = 0, send_errors = 0;
   std::size_t ring_slots = 0, ring_high_water = 0, clients = 0;
   double rate_hz = 0.0;  ///< poses in the last second
@@ -44,7 +45,7 @@ struct Health {
 };
 
 /// What keeps `health` from being good, in words; empty when nothing does.
-using Complaints = boost::container::static_vector<std::string_view, 9>;
+using Complaints = boost::container::static_vector<std::string_view, 10>;
 Complaints complaints(const Health& health);
 
 /// The health datagram of PROTOCOL.md.

@@ -48,6 +48,10 @@ void HealthMonitor::started(const RealtimeReport& report) {
 void HealthMonitor::add(const PoseReport& report, double latency_ms) {
   status_ = report.estimate.status;
   clock_ = report.clock;
+  const std::uint64_t refused = report.estimate.map_refused_count;
+  // After a reset another odometry counts, from 0.
+  map_refused_ += refused >= map_refused_last_ ? refused - map_refused_last_ : refused;
+  map_refused_last_ = refused;
   latency_ms_.add(latency_ms);
   processing_ms_.add(static_cast<double>(report.processing_ns) * 1e-6);
   for (std::size_t k = 0; k < stages_ms_.size(); ++k)
@@ -72,6 +76,7 @@ void HealthMonitor::collect(const PublisherCounts& published, Health& h) {
   h.source = engine_.receiver().driver_counts().source();
   h.scans_processed = counters.scans_processed;
   h.scans_dropped = counters.scans_overrun + counters.scans_skipped;
+  h.map_refused = map_refused_;
   h.poses_sent = published.poses_sent;
   h.poses_not_sent = published.poses_not_sent + counters.reports_dropped;
   h.send_errors = published.send_errors;

@@ -36,6 +36,7 @@ class HealthMonitor {
   ClockSource clock_ = ClockSource::host;
   std::uint64_t reports_ = 0;
   std::uint64_t faults_when_warm_ = 0, faults_now_ = 0, major_faults_at_start_ = 0;
+  std::uint64_t map_refused_ = 0, map_refused_last_ = 0;
   std::uint64_t poses_at_last_look_ = 0;
   std::int64_t last_look_ns_;
   bool config_error_ = false, metrics_error_ = false;

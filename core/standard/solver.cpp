@@ -59,6 +59,11 @@ int LocalMaps::size() const {
          structure_coarse.size();
 }
 
+std::uint64_t LocalMaps::refused() const {
+  return ground_fine.refused() + ground_coarse.refused() + structure_fine.refused() +
+         structure_coarse.refused();
+}
+
 /// Places the next features and looks for their cells in the fine maps. Many at a time, here and in
 /// match(), so that the memory's answers overlap. Returns how many.
 std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t first,

@@ -28,7 +28,8 @@ struct LocalMaps {
   void end_keyframe();
   void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
   void clear();
-  [[nodiscard]] int size() const;  ///< cells
+  [[nodiscard]] int size() const;               ///< cells
+  [[nodiscard]] std::uint64_t refused() const;  ///< points that found no room
 };
 
 struct SolverConfig {

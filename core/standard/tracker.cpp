@@ -238,6 +238,7 @@ Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
       chosen.begin(), chosen.end(), [](const Feature& f) { return f.kind == Kind::ground; }));
   e.surface_count = static_cast<int>(chosen.size()) - e.ground_count;
   e.map_surface_count = maps_.size();
+  e.map_refused_count = maps_.refused();
   e.correspondence_count = solution.matched;
   e.iterations = solution.iterations;
   if (scan_count_ > 0 && status_ != TrackingStatus::lost) {

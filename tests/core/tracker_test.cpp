@@ -59,6 +59,22 @@ TEST(DefaultProfile, FollowsADriveWithSixteenBeams) {
   EXPECT_EQ(result.estimates.back().status, TrackingStatus::tracking);
 }
 
+TEST(DefaultProfile, CountsWhatAFullMapHasNoRoomFor) {
+  EXPECT_EQ(run(k16, 6.0, 0.0, 3).estimates.back().map_refused_count, 0U);
+  OdometryConfig config;
+  config.standard.map_cells = 400;
+  Odometry odometry{config};
+  std::uint64_t refused_before = 0;
+  for (std::uint64_t k = 0; k < 3; ++k) {
+    const auto at = [k](double s) { return drive(0.1 * (static_cast<double>(k) + s), 6.0); };
+    const Estimate e = odometry.process(test::scan_of(test::yard(), k16, 900, at, k));
+    EXPECT_LE(e.map_surface_count, 2 * (400 + 100));  // fine and coarse, of ground and structure
+    EXPECT_GE(e.map_refused_count, refused_before);
+    refused_before = e.map_refused_count;
+  }
+  EXPECT_GT(refused_before, 1000U);  // a scan has thousands of points, of most of the yard
+}
+
 TEST(DefaultProfile, FollowsADriveWithSixtyFourBeams) {
   const Result result = run(k64, 6.0);
   EXPECT_LT(result.worst_m, 0.03);

@@ -54,6 +54,7 @@ TEST(Health, NeverOutgrowsTheDatagram) {
   const std::uint64_t huge = std::numeric_limits<std::uint32_t>::max() * std::uint64_t{1000};
   h.driver = {huge, huge, huge, huge, huge, huge, huge, huge, huge};
   h.source = {huge, huge, huge, huge, huge};
+  h.map_refused = huge;
   h.scans_processed = h.scans_dropped = h.poses_sent = h.poses_not_sent = h.send_errors = huge;
   h.worker_minor_faults = h.major_faults = huge;
   h.latency_ms = h.processing_ms = {12345.67, 12345.67, 12345.67};
@@ -65,13 +66,26 @@ TEST(Health, NeverOutgrowsTheDatagram) {
   JsonWriter out;
   const std::string_view text = write_health("0123456789abcdef", h, out);
   ASSERT_FALSE(text.empty());
-  EXPECT_EQ(json::parse(text)["health"]["complaints"].size(), 7U);
+  EXPECT_EQ(json::parse(text)["health"]["complaints"].size(), 8U);
 }
 
 TEST(Health, ComplaintsAreEmptyWhenAllIsWell) {
   Health h = a_health();
   h.driver.packets_lost = 0;
   EXPECT_TRUE(complaints(h).empty());
+}
+
+TEST(Health, SaysThatTheMapIsFull) {
+  Health h = a_health();
+  h.driver.packets_lost = 0;
+  h.map_refused = 17;
+  JsonWriter out;
+  const json m = json::parse(write_health("0123456789abcdef", h, out))["health"];
+  EXPECT_EQ(m["map_refused"], 17);
+  EXPECT_EQ(m["complaints"], json::array({"map full"}));
+  std::string text;
+  write_prometheus("0123456789abcdef", h, text);
+  EXPECT_NE(text.find("\nlilo_map_refused_total 17\n"), std::string::npos);
 }
 
 // promtool's rules: HELP and TYPE before the samples, each metric once, counters end in _total,
