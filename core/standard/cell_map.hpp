@@ -161,9 +161,13 @@ class CellMap {
   [[nodiscard]] Eigen::Vector3d center_of(const CellIndex& i) const {
     return static_cast<double>(config_.cell_m) * Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5);
   }
-  /// std::floor() is a call where the processor need not have SSE 4.1.
+  /// std::floor() is a call where the processor need not have SSE 4.1. What lies beyond a billion
+  /// cells, or is nan, is counted as there.
   static std::int32_t floor_of(double v) {
     constexpr std::uint32_t kAbove = 1U << 30U;  // zero: from there, to cut off is to round down
+    constexpr double kFar = kAbove - 2U;
+    v = v > -kFar ? v : -kFar;
+    v = v < kFar ? v : kFar;
     return static_cast<std::int32_t>(
         static_cast<std::uint32_t>(static_cast<std::int32_t>(v + kAbove)) - kAbove);
   }

@@ -10,8 +10,14 @@ constexpr std::int32_t kSide = 512;  // cells; 256 m
 constexpr std::int32_t kOutside = kSide * kSide;
 constexpr float kPerMetre = Footprint::kPerMetre;
 
+/// Of a place that no integer holds, nan among them, one just outside.
+std::int32_t whole(float v) {
+  v = v > -1.0F ? v : -1.0F;
+  return static_cast<std::int32_t>(v < static_cast<float>(kSide) ? v : static_cast<float>(kSide));
+}
+
 std::int32_t cell_at(float x, float y) {
-  const auto column = static_cast<std::int32_t>(x), row = static_cast<std::int32_t>(y);
+  const std::int32_t column = whole(x), row = whole(y);
   const bool outside = ((column | row) & -kSide) != 0;  // negative, or too large
   return outside ? kOutside : row * kSide + column;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace lilo::standard {
@@ -173,6 +174,18 @@ TEST_F(Filled, ForgetsWhatIsFarUpToTheWindowOfTheTags) {
   EXPECT_GT(map_.size(), 1500);
   for (int turn = 0; turn < 100; ++turn) map_.forget_beyond({0.0, 0.0, 0.0}, 100.0);
   EXPECT_EQ(map_.size(), 0);
+}
+
+// Where a pose ran away there are points that no cell's index can hold.
+TEST_F(Filled, PlacesBeyondAllCellsAreUnknownAndDoNoHarm) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double far_m : {1e9, -1e9, 1e18, -1e300, nan}) {
+    EXPECT_EQ(map_.find({far_m, far_m, far_m}).information, nullptr) << far_m;
+    map_.insert({far_m, 0.0, 0.0}, no_reach_);
+  }
+  EXPECT_GT(map_.size(), 0);
+  for (int k = 0; k < 8; ++k) map_.insert({uniform(0, 0.4), uniform(0, 0.4), 0.25}, no_reach_);
+  EXPECT_NE(map_.find({0.2, 0.2, 0.25}).information, nullptr);
 }
 
 TEST(CellMap, RefusesCellsBeyondItsCapacityAndCountsThem) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace lilo::standard {
@@ -178,6 +179,23 @@ TEST(Footprint, ForgetsWhatWasBeforeClear) {
       footprint.add(post, {0.0, 0.0}, {0.0, 0.0});
       ASSERT_EQ(footprint.cells(), 1);
     }
+  }
+}
+
+TEST(Footprint, LeavesOutWhatNoCellCanHold) {
+  const auto scans = two_scans({});
+  ASSERT_GT(cells_under(scans, {}), 0);
+  for (const double far_m : {1e12, -1e12, 1e30, std::numeric_limits<double>::quiet_NaN()}) {
+    Footprint footprint(100000);
+    Outline outline;
+    outline.assign(scans[0]);
+    Plan plan;
+    plan.assign(outline, Eigen::Quaterniond::Identity(), Eigen::Quaterniond::Identity(),
+                Share::all);
+    const Eigen::Vector2d there_m(far_m, far_m);
+    footprint.add(plan, there_m, there_m, Share::all);
+    footprint.add(there_m, 1);
+    EXPECT_EQ(footprint.cells(), 0) << far_m;
   }
 }
 
