@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <iterator>
 #include <spawn.h>
+#include <sstream>
 #include <stdexcept>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -53,7 +54,7 @@ void run_gnuplot(const std::string& folder, const std::string& name, const std::
   file << script;
   finish_text(file, path);
   const std::string log = std::filesystem::absolute(path).string() + ".log";
-  const int status = spawn_gnuplot(folder, name + ".gp", log);
+  const int status = spawn_gnuplot(folder, "./" + name + ".gp", log);
   const std::string said = complaint(log);
   std::filesystem::remove(log);
   if (status == 127) {
@@ -74,16 +75,26 @@ set autoscale xfixmax
 set grid ytics back linetype 1 linecolor rgb "#e0e0e0" linewidth 1
 set key top left outside horizontal samplen 2 noenhanced
 )",
-                     width, height, gnuplot_text(png));
+                     width, height, gnuplot_file(png));
 }
 
 std::string gnuplot_text(const std::string& text) {
-  std::string result = "\"";
+  std::string result = "'";
   for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c == '\n' ? ' ' : c;
+    if (c == '\'') result += c;
+    result += c == '\n' || c == '\r' ? ' ' : c;
   }
-  return result + '"';
+  return result + "'";
+}
+
+std::string gnuplot_file(const std::string& name) {
+  // A script is read line by line: a new line stands in double quotes of its own.
+  std::string result;
+  std::istringstream lines("./" + name);
+  for (std::string line; std::getline(lines, line);) {
+    result += (result.empty() ? "" : R"(."\n".)") + gnuplot_text(line);
+  }
+  return result;
 }
 
 }  // namespace lilo

@@ -1,12 +1,14 @@
 #include "tools/gnuplot.hpp"
 
 #include "tests/tools/temporary_folder.hpp"
+#include "tools/plot/error_chart.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 namespace lilo {
@@ -41,7 +43,32 @@ TEST(Gnuplot, AScriptItDoesNotLikeIsOneLineOfError) {
   }
 }
 
-TEST(Gnuplot, TextKeepsItsQuotes) { EXPECT_EQ(gnuplot_text("a \"b\" \\"), R"("a \"b\" \\")"); }
+TEST(Gnuplot, TextIsSingleQuotedSoThatNothingInItIsExecuted) {
+  EXPECT_EQ(gnuplot_text("a \"b\" \\ `c` $d"), "'a \"b\" \\ `c` $d'");
+  EXPECT_EQ(gnuplot_text("it's"), "'it''s'");
+  EXPECT_EQ(gnuplot_text("two\nlines"), "'two lines'");
+  EXPECT_EQ(gnuplot_file("<touch x"), "'./<touch x'");
+}
+
+// Whatever files and trajectories are called, no command of theirs runs, and the chart is drawn.
+TEST(Gnuplot, NamesAndTitlesAreNeverCode) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const std::string name = "`touch ran_1` \"$(touch ran_2)\" it's $HOME \\ @x\n$y {Bold z}_^";
+  Trajectory estimate{.name = name}, truth{.name = name};
+  for (int k = 0; k < 20; ++k) {
+    truth.poses.push_back({0, {.translation_m = {1.0 * k, 0, 0}}});
+    estimate.poses.push_back({0, {.translation_m = {1.01 * k, 0, 0}}});
+  }
+  for (const std::string& stem : {name, "<touch ran_3;" + name, "|touch ran_4;" + name}) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path() + "/" + stem + ".png";
+    draw_errors({estimate, estimate}, truth, name, out);
+    EXPECT_GT(std::filesystem::file_size(out), 1000U);
+    EXPECT_TRUE(std::filesystem::exists(folder.path() + "/" + stem + "_1.csv"));
+    // The picture, two tables and the script.
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 4);
+  }
+}
 
 }  // namespace
 }  // namespace lilo

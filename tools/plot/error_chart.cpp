@@ -20,9 +20,9 @@ std::string curves(const std::vector<Trajectory>& estimates, const std::string& 
   std::string text = "plot ";
   for (std::size_t k = 0; k < estimates.size(); ++k) {
     text +=
-        fmt::format("{}'{}_{}.csv' using 'distance_m':'{}' with lines lw 1.8 lc rgb '{}' title {}",
-                    k == 0 ? "" : ", \\\n  ", stem, k + 1, column, kColors.at(k % kColors.size()),
-                    gnuplot_text(estimates[k].name));
+        fmt::format("{}{} using 'distance_m':'{}' with lines lw 1.8 lc rgb '{}' title {}",
+                    k == 0 ? "" : ", \\\n  ", gnuplot_file(fmt::format("{}_{}.csv", stem, k + 1)),
+                    column, kColors.at(k % kColors.size()), gnuplot_text(estimates[k].name));
   }
   return text + "\n";
 }

@@ -100,9 +100,9 @@ std::string panel(const std::vector<Line>& lines, const std::string& x, const st
                   const std::string& axis) {
   std::string text = fmt::format("set ylabel {}\nplot ", gnuplot_text(axis));
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    text += fmt::format("{}'{}' using '{}':'{}' with lines lw 1.4 lc rgb '{}' title {}",
-                        k == 0 ? "" : ", \\\n  ", lines[k].file, x, y, kColors.at(k % 3),
-                        gnuplot_text(lines[k].title));
+    text += fmt::format("{}{} using '{}':'{}' with lines lw 1.4 lc rgb '{}' title {}",
+                        k == 0 ? "" : ", \\\n  ", gnuplot_file(lines[k].file), x, y,
+                        kColors.at(k % 3), gnuplot_text(lines[k].title));
   }
   return text + "\n";
 }
@@ -198,14 +198,14 @@ Chart path_chart(const std::string& folder, const Cell& chosen) {
       "set yrange [{:.3f}:{:.3f}]\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n",
       area.low.x(), area.high.x(), area.low.y(), area.high.y());
   script += fmt::format(
-      "plot '{}' using 'true_x_m':'true_y_m' with lines lw 9 lc rgb '#d4d4d4' "
+      "plot {} using 'true_x_m':'true_y_m' with lines lw 9 lc rgb '#d4d4d4' "
       "title 'truth'",
-      lines[0].file);
+      gnuplot_file(lines[0].file));
   for (std::size_t k = 0; k < lines.size(); ++k) {
     // Each on top of the one before and thinner, so that paths that agree are all seen.
-    script +=
-        fmt::format(", \\\n  '{}' using 'x_m':'y_m' with lines lw {} lc rgb '{}' title '{}'",
-                    lines[k].file, std::array{4.0, 2.6, 1.2}.at(k), kColors.at(k), lines[k].title);
+    script += fmt::format(", \\\n  {} using 'x_m':'y_m' with lines lw {} lc rgb '{}' title {}",
+                          gnuplot_file(lines[k].file), std::array{4.0, 2.6, 1.2}.at(k),
+                          kColors.at(k), gnuplot_text(lines[k].title));
   }
   run_gnuplot(folder, name, script + "\n");
   return {name + ".png", "Figures 9b and 10, " + chosen.set,
