@@ -76,6 +76,7 @@ std::string_view write(const std::string& session, const Health& h, bool with_st
   out.unsigned_integer("poses_sent", h.poses_sent);
   out.unsigned_integer("poses_not_sent", h.poses_not_sent);
   out.unsigned_integer("send_errors", h.send_errors);
+  out.unsigned_integer("receive_errors", h.source.receive_errors);
   out.unsigned_integer("clients", h.clients);
   write_quantiles(out, "latency_ms", h.latency_ms);
   write_quantiles(out, "processing_ms", h.processing_ms);
@@ -160,6 +161,7 @@ Complaints complaints(const Health& h) {
   if (h.status == TrackingStatus::lost) out.emplace_back("lost");
   if (h.status == TrackingStatus::degraded) out.emplace_back("degraded");
   if (h.driver.packets_lost > 0) out.emplace_back("packets lost");
+  if (h.source.receive_errors > 0) out.emplace_back("receive errors");
   if (h.scans_dropped > 0) out.emplace_back("scans dropped");
   if (h.map_refused > 0) out.emplace_back("map full");
   if (!h.realtime.refusals.empty()) out.emplace_back("real time refused");
@@ -187,6 +189,8 @@ void write_prometheus(const std::string& session, const Health& h, std::string& 
   m.counter("lilo_packets_lost_total", "Data packets that never came.", d(h.driver.packets_lost));
   m.counter("lilo_packets_kernel_dropped_total", "Packets the socket had no room for.",
             d(h.source.kernel_dropped));
+  m.counter("lilo_receive_errors_total", "Failures to read from the sockets.",
+            d(h.source.receive_errors));
   m.counter("lilo_packets_malformed_total", "Packets that are no sensor's.",
             d(h.driver.malformed_packets));
   m.counter("lilo_scans_complete_total", "Whole revolutions.", d(h.driver.scans_complete));

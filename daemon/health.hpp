@@ -45,7 +45,7 @@ struct Health {
 };
 
 /// What keeps `health` from being good, in words; empty when nothing does.
-using Complaints = boost::container::static_vector<std::string_view, 10>;
+using Complaints = boost::container::static_vector<std::string_view, 11>;
 Complaints complaints(const Health& health);
 
 /// The health datagram of PROTOCOL.md.

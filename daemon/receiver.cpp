@@ -30,8 +30,9 @@ void SharedDriverCounts::store(const DriverCounts& driver, const SourceCounts& s
       driver.data_packets,   driver.position_packets,   driver.malformed_packets,
       driver.packets_lost,   driver.packets_duplicated, driver.packets_reordered,
       driver.scans_complete, driver.scans_partial,      driver.sensor_restarts};
-  const std::array<std::uint64_t, 5> s{source.packets, source.foreign, source.truncated,
-                                       source.fragments, source.kernel_dropped};
+  const std::array<std::uint64_t, 6> s{source.packets,        source.foreign,
+                                       source.truncated,      source.fragments,
+                                       source.kernel_dropped, source.receive_errors};
   for (std::size_t i = 0; i < d.size(); ++i) driver_[i].store(d[i], std::memory_order_relaxed);
   for (std::size_t i = 0; i < s.size(); ++i) source_[i].store(s[i], std::memory_order_relaxed);
 }
@@ -55,7 +56,8 @@ SourceCounts SharedDriverCounts::source() const {
           .foreign = at(1),
           .truncated = at(2),
           .fragments = at(3),
-          .kernel_dropped = at(4)};
+          .kernel_dropped = at(4),
+          .receive_errors = at(5)};
 }
 
 Receiver::Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sensor,

@@ -22,7 +22,7 @@ class SharedDriverCounts {
 
  private:
   std::array<std::atomic<std::uint64_t>, 9> driver_{};
-  std::array<std::atomic<std::uint64_t>, 5> source_{};
+  std::array<std::atomic<std::uint64_t>, 6> source_{};
 };
 
 /// Packets to scans and their features, on a thread of its own. The features are found while the

@@ -166,15 +166,15 @@ void Service::supervise() {
   std::swap(status_, new_status_);
 
   const std::uint64_t problems = h.driver.packets_lost + h.driver.malformed_packets +
-                                 h.source.kernel_dropped + h.map_refused + h.scans_dropped +
-                                 h.poses_not_sent + h.send_errors;
+                                 h.source.kernel_dropped + h.source.receive_errors + h.map_refused +
+                                 h.scans_dropped + h.poses_not_sent + h.send_errors;
   if (problems == problems_logged_ || !problem_lines_.take(monotonic_ns())) return;
   problems_logged_ = problems;
   spdlog::warn(
-      "packets lost {} (by the kernel {}), malformed {}; scans dropped {}; map full for {} points; "
-      "poses not sent {}; send errors {}",
-      h.driver.packets_lost, h.source.kernel_dropped, h.driver.malformed_packets, h.scans_dropped,
-      h.map_refused, h.poses_not_sent, h.send_errors);
+      "packets lost {} (by the kernel {}), malformed {}; receive errors {}; scans dropped {}; map "
+      "full for {} points; poses not sent {}; send errors {}",
+      h.driver.packets_lost, h.source.kernel_dropped, h.driver.malformed_packets,
+      h.source.receive_errors, h.scans_dropped, h.map_refused, h.poses_not_sent, h.send_errors);
 }
 
 void Service::await_watchdog(std::int64_t interval_us) {

@@ -35,6 +35,7 @@ struct SourceCounts {
   std::uint64_t truncated = 0;       ///< shorter than their own headers say
   std::uint64_t fragments = 0;       ///< IP fragments, never reassembled
   std::uint64_t kernel_dropped = 0;  ///< the socket buffer was full (live only)
+  std::uint64_t receive_errors = 0;  ///< failures to read from a socket (live only)
 };
 
 /// Where packets come from. One thread reads.

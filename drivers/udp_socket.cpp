@@ -2,6 +2,7 @@
 
 #include <boost/asio/ip/multicast.hpp>
 
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <netinet/in.h>
@@ -91,6 +92,7 @@ bool UdpSocket::fill() {
     headers_[i].msg_hdr.msg_controllen = kControlBytes;
   }
   const int got = recvmmsg(native(), headers_.data(), kSlots, MSG_DONTWAIT, nullptr);
+  if (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) ++receive_errors_;
   filled_ = got > 0 ? static_cast<std::size_t>(got) : 0;
   given_ = 0;
   return filled_ > 0;

@@ -21,7 +21,7 @@ class UdpSocket {
   /// Throws DriverError naming what cannot be had.
   UdpSocket(boost::asio::io_context& context, const UdpConfig& config, std::uint16_t port);
 
-  /// Takes what is waiting, without waiting. False when there was nothing.
+  /// Takes what is waiting, without waiting. False when there was nothing, or an error.
   bool fill();
   /// The next datagram taken, of any sender; false when all were given out. `truncated` tells that
   /// it was longer than a slot.
@@ -32,6 +32,8 @@ class UdpSocket {
   [[nodiscard]] int receive_buffer_bytes() const { return receive_buffer_bytes_; }
   /// Datagrams the kernel dropped because the buffer was full (SO_RXQ_OVFL).
   [[nodiscard]] std::uint64_t kernel_dropped() const { return kernel_dropped_; }
+  /// Times that reading failed, other than for want of datagrams.
+  [[nodiscard]] std::uint64_t receive_errors() const { return receive_errors_; }
 
  private:
   static constexpr std::size_t kSlots = 64;
@@ -55,7 +57,7 @@ class UdpSocket {
   std::array<mmsghdr, kSlots> headers_{};
   std::size_t filled_ = 0, given_ = 0;
   std::uint32_t drop_counter_ = 0;
-  std::uint64_t kernel_dropped_ = 0;
+  std::uint64_t kernel_dropped_ = 0, receive_errors_ = 0;
 };
 
 }  // namespace lilo

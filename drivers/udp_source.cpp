@@ -4,11 +4,16 @@
 #include <boost/asio/ip/address_v4.hpp>
 
 #include <array>
+#include <chrono>
 #include <optional>
 #include <poll.h>
+#include <thread>
 
 namespace lilo {
 namespace {
+
+// Short enough for the socket's buffer to hold what comes meanwhile.
+constexpr std::chrono::milliseconds kAfterAnError{10};
 
 class TwoPortSource final : public UdpSource {
  public:
@@ -21,6 +26,7 @@ class TwoPortSource final : public UdpSource {
  private:
   bool take(UdpSocket& socket, PacketView& packet);
   bool fill();
+  [[nodiscard]] std::uint64_t receive_errors() const;
   bool wait(std::chrono::milliseconds timeout);
 
   boost::asio::io_context context_;
@@ -47,7 +53,12 @@ TwoPortSource::TwoPortSource(const UdpConfig& config)
 SourceCounts TwoPortSource::counts() const {
   SourceCounts counts = counts_;
   counts.kernel_dropped = data_.kernel_dropped() + (position_ ? position_->kernel_dropped() : 0);
+  counts.receive_errors = receive_errors();
   return counts;
+}
+
+std::uint64_t TwoPortSource::receive_errors() const {
+  return data_.receive_errors() + (position_ ? position_->receive_errors() : 0);
 }
 
 bool TwoPortSource::take(UdpSocket& socket, PacketView& packet) {
@@ -87,8 +98,12 @@ ReadResult TwoPortSource::read(PacketView& packet, std::chrono::milliseconds tim
 }
 
 bool TwoPortSource::fill() {
+  const std::uint64_t errors_before = receive_errors();
   const bool position_came = position_ && position_->fill();
-  return data_.fill() || position_came;
+  if (data_.fill() || position_came) return true;
+  // A socket with an error counts as readable: at real-time priority it would take the whole core.
+  if (receive_errors() != errors_before) std::this_thread::sleep_for(kAfterAnError);
+  return false;
 }
 
 }  // namespace

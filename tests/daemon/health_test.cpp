@@ -53,7 +53,7 @@ TEST(Health, NeverOutgrowsTheDatagram) {
   Health h = a_health();
   const std::uint64_t huge = std::numeric_limits<std::uint32_t>::max() * std::uint64_t{1000};
   h.driver = {huge, huge, huge, huge, huge, huge, huge, huge, huge};
-  h.source = {huge, huge, huge, huge, huge};
+  h.source = {huge, huge, huge, huge, huge, huge};
   h.map_refused = huge;
   h.scans_processed = h.scans_dropped = h.poses_sent = h.poses_not_sent = h.send_errors = huge;
   h.worker_minor_faults = h.major_faults = huge;
@@ -66,7 +66,7 @@ TEST(Health, NeverOutgrowsTheDatagram) {
   JsonWriter out;
   const std::string_view text = write_health("0123456789abcdef", h, out);
   ASSERT_FALSE(text.empty());
-  EXPECT_EQ(json::parse(text)["health"]["complaints"].size(), 8U);
+  EXPECT_EQ(json::parse(text)["health"]["complaints"].size(), 9U);
 }
 
 TEST(Health, ComplaintsAreEmptyWhenAllIsWell) {
@@ -75,17 +75,20 @@ TEST(Health, ComplaintsAreEmptyWhenAllIsWell) {
   EXPECT_TRUE(complaints(h).empty());
 }
 
-TEST(Health, SaysThatTheMapIsFull) {
+TEST(Health, SaysThatTheMapIsFullAndThatSocketsFail) {
   Health h = a_health();
   h.driver.packets_lost = 0;
   h.map_refused = 17;
+  h.source.receive_errors = 4;
   JsonWriter out;
   const json m = json::parse(write_health("0123456789abcdef", h, out))["health"];
   EXPECT_EQ(m["map_refused"], 17);
-  EXPECT_EQ(m["complaints"], json::array({"map full"}));
+  EXPECT_EQ(m["receive_errors"], 4);
+  EXPECT_EQ(m["complaints"], json::array({"receive errors", "map full"}));
   std::string text;
   write_prometheus("0123456789abcdef", h, text);
   EXPECT_NE(text.find("\nlilo_map_refused_total 17\n"), std::string::npos);
+  EXPECT_NE(text.find("\nlilo_receive_errors_total 4\n"), std::string::npos);
 }
 
 // promtool's rules: HELP and TYPE before the samples, each metric once, counters end in _total,

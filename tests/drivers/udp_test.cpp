@@ -6,7 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <thread>
+#include <unistd.h>
 
 namespace lilo {
 namespace {
@@ -121,6 +125,37 @@ TEST(UdpSource, JoinsAMulticastGroup) {
   UdpConfig config = loopback();
   config.multicast_group = "10.1.2.3";
   EXPECT_THROW(open_udp(config), DriverError);
+}
+
+/// The descriptor of this process that has the port; -1: none.
+int descriptor_of(std::uint16_t port) {
+  for (int fd = 0; fd < 1024; ++fd) {
+    sockaddr_in address{};
+    socklen_t size = sizeof(address);
+    if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
+        address.sin_family == AF_INET && ntohs(address.sin_port) == port) {
+      return fd;
+    }
+  }
+  return -1;
+}
+
+// Always readable, and no read succeeds: in place of the socket there is a file.
+TEST(UdpSource, CountsErrorsOfItsSocketAndDoesNotSpin) {
+  auto source = open_udp(loopback());
+  const int fd = descriptor_of(source->data_port());
+  ASSERT_GE(fd, 0);
+  const int file = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(dup2(file, fd), fd);
+  close(file);
+  PacketView packet;
+  int reads = 0;
+  const auto end = std::chrono::steady_clock::now() + milliseconds(200);
+  for (; std::chrono::steady_clock::now() < end; ++reads) {
+    EXPECT_EQ(source->read(packet, milliseconds(100)), ReadResult::timeout);
+  }
+  EXPECT_GT(source->counts().receive_errors, 0U);
+  EXPECT_LE(reads, 20);  // 10 ms after every error
 }
 
 }  // namespace
