@@ -62,6 +62,16 @@ TEST_P(SystemdUnit, LeavesRealTimeIn) {
   EXPECT_FALSE(std::regex_search(text_, std::regex("\nSystemCallFilter=~.*@resources")));
 }
 
+// A bad configuration is bad at every start; everything else is tried again.
+TEST_P(SystemdUnit, IsNotRestartedWithABadConfiguration) {
+  EXPECT_NE(text_.find("\nRestart=on-failure\n"), std::string::npos);
+  std::smatch code;
+  ASSERT_TRUE(std::regex_search(text_, code, std::regex("\nRestartPreventExitStatus=(.*)\n")));
+  std::ofstream(folder_ + "/bad.yaml") << "no_such_key: 1\n";
+  const Finished run = run_to_end({LILO_BIN_DIR "/lilod", "--config", folder_ + "/bad.yaml"});
+  EXPECT_EQ(std::to_string(run.exit_code), code[1]);
+}
+
 INSTANTIATE_TEST_SUITE_P(Shipped, SystemdUnit, testing::Values("lilod.service", "lilod@.service"),
                          [](const auto& test) {
                            return std::string(test.param).starts_with("lilod@") ? "instance"
