@@ -82,7 +82,10 @@ class ConfigError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Whether a file without any key will do: every key has a default.
+enum class EmptyFile : std::uint8_t { allowed, refused };
+
 /// Reads a YAML file. Throws ConfigError.
-Config load_config(const std::string& path);
+Config load_config(const std::string& path, EmptyFile empty = EmptyFile::allowed);
 
 }  // namespace lilo

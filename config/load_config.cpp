@@ -103,7 +103,7 @@ void resolve_paths(const std::string& config_path, Config& config) {
 
 }  // namespace
 
-Config load_config(const std::string& path) {
+Config load_config(const std::string& path, EmptyFile empty) {
   const std::string text = read_file(path);
   const std::vector<Key> keys = config_keys();
   CheckedYaml yaml = read_yaml(text, keys, config_sections());
@@ -113,6 +113,9 @@ Config load_config(const std::string& path) {
     for (const Contradiction& found : contradictions(config)) {
       yaml.problems.push_back(placed(found, yaml.entries));
     }
+  }
+  if (empty == EmptyFile::refused && yaml.entries.empty() && yaml.problems.empty()) {
+    yaml.problems.push_back({.text = "expected at least one key, found none"});
   }
   if (!yaml.problems.empty()) {
     std::string lines;

@@ -115,7 +115,8 @@ void Service::await_signal() {
 void Service::reload() {
   notify::reloading();
   try {
-    apply(load_config(config_path_));
+    // Without a key it is a file that is being written, or was emptied by mistake.
+    apply(load_config(config_path_, EmptyFile::refused));
     monitor_.config_was_bad(false);
   } catch (const ConfigError& error) {
     monitor_.config_was_bad(true);

@@ -68,6 +68,20 @@ TEST(LoadConfig, KeysLeftOutKeepTheirDefaults) {
   }
 }
 
+TEST(LoadConfig, AFileWithoutKeysIsRefusedWhereItMayNotBeEmpty) {
+  for (const char* text : {"", "# nothing\n", "publish:\n"}) {
+    const YamlFile file(text);
+    try {
+      load_config(file.path(), EmptyFile::refused);
+      ADD_FAILURE() << "\"" << text << "\" was read";
+    } catch (const ConfigError& error) {
+      EXPECT_EQ(error.what(), file.path() + ": expected at least one key, found none");
+    }
+  }
+  const YamlFile one("udp:\n  data_port: 2368\n");
+  EXPECT_EQ(load_config(one.path(), EmptyFile::refused).udp.data_port, 2368);
+}
+
 TEST(LoadConfig, CapturesHaveTheirPositionPacketsOnTheConfiguredPort) {
   const YamlFile file("udp:\n  position_port: 8400\n");
   EXPECT_EQ(load_config(file.path()).sensor.position_port, 8400);

@@ -90,6 +90,21 @@ TEST(Reload, ABadFileChangesNothing) {
   EXPECT_NE(lilod.process().standard_error().find("did you mean publish?"), std::string::npos);
 }
 
+// As it is for a moment while an editor writes it: the sinks stay.
+TEST(Reload, AnEmptyFileChangesNothing) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  std::ofstream(lilod.config_path()).close();
+  lilod.process().signal(SIGHUP);
+  ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
+  while (lilod.sink().receive(milliseconds(0))) {
+  }
+  EXPECT_TRUE(next_of_kind(lilod.sink(), "health")) << "the old sink is still in force";
+  EXPECT_EQ(lilod.stop(), 0);
+  const std::string log = lilod.process().standard_error();
+  EXPECT_NE(log.find("expected at least one key, found none"), std::string::npos) << log;
+}
+
 /// The thread of a process by its name.
 pid_t thread_named(pid_t process, const std::string& name) {
   const std::string tasks = "/proc/" + std::to_string(process) + "/task";
