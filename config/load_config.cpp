@@ -63,6 +63,35 @@ void check_map(const Config& c, std::vector<Contradiction>& found) {
                    std::ceil(1e4 * reach_m / kCells) * 1e-4, radius_m, range_m, cell_m)});
 }
 
+// Whether a datagram to `sink` comes to the socket that is bound to that address and port.
+bool reaches(const std::string& sink, const std::string& bound_to, int port) {
+  const std::size_t colon = sink.rfind(':');
+  const std::string name = sink.substr(0, colon);
+  const std::string host = name == "localhost" ? "127.0.0.1" : name;
+  const bool any = bound_to == "0.0.0.0" && host.starts_with("127.");
+  return sink.substr(colon + 1) == std::to_string(port) && (any || host == bound_to);
+}
+
+// What lilod sends to itself it would take for a request, or for a packet of a sensor.
+void check_sinks(const Config& c, std::vector<Contradiction>& found) {
+  struct Own {
+    const char* key;
+    const std::string& address;
+    int port;
+  };
+  for (const std::string& sink : c.publish.sinks) {
+    for (const Own& own : {Own{"subscribe.port", c.subscribe.bind_address, c.subscribe.port},
+                           Own{"udp.data_port", c.udp.bind_address, c.udp.data_port},
+                           Own{"udp.position_port", c.udp.bind_address, c.udp.position_port}}) {
+      if (own.port == 0 || !reaches(sink, own.address, own.port)) continue;
+      found.push_back({{"publish.sinks", own.key},
+                       fmt::format("expected other programs' ports, not lilod's own {}, found "
+                                   "\"{}\"",
+                                   own.key, sink)});
+    }
+  }
+}
+
 // Rules between keys. Each key by itself is already in its range.
 std::vector<Contradiction> contradictions(const Config& c) {
   std::vector<Contradiction> found;
@@ -79,6 +108,7 @@ std::vector<Contradiction> contradictions(const Config& c) {
   require(c.udp.data_port != c.udp.position_port, {"udp.position_port", "udp.data_port"},
           fmt::format("expected another port than udp.data_port, found {}", c.udp.position_port));
   check_map(c, found);
+  check_sinks(c, found);
   return found;
 }
 

@@ -82,6 +82,11 @@ TEST(LoadConfig, AFileWithoutKeysIsRefusedWhereItMayNotBeEmpty) {
   EXPECT_EQ(load_config(one.path(), EmptyFile::refused).udp.data_port, 2368);
 }
 
+TEST(LoadConfig, TakesSinksOnOtherPortsAndOtherHosts) {
+  EXPECT_EQ(errors_of("publish:\n  sinks: [\"127.0.0.1:9870\", \"10.0.0.7:9871\"]\n"), "");
+  EXPECT_EQ(errors_of("subscribe:\n  port: 0\npublish:\n  sinks: [\"127.0.0.1:9871\"]\n"), "");
+}
+
 TEST(LoadConfig, CapturesHaveTheirPositionPacketsOnTheConfiguredPort) {
   const YamlFile file("udp:\n  position_port: 8400\n");
   EXPECT_EQ(load_config(file.path()).sensor.position_port, 8400);
@@ -195,6 +200,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "3:19: odometry.default.cell_m: expected at least 0.5871 with "
                 "odometry.default.map_radius_m 300 and returns from up to 100 m (max_range_m), "
                 "found 0.5"},
+        BadCase{"SinkIsTheRequestPort", "publish:\n  sinks: [\"localhost:9871\"]\n",
+                "2:10: publish.sinks: expected other programs' ports, not lilod's own "
+                "subscribe.port, found \"localhost:9871\""},
+        BadCase{"SinkIsTheDataPort", "publish:\n  sinks: [\"127.0.0.1:2368\"]\n",
+                "2:10: publish.sinks: expected other programs' ports, not lilod's own "
+                "udp.data_port, found \"127.0.0.1:2368\""},
         BadCase{
             "AllAtOnce", "udp:\n  data_port: 0\n  nonsense_here: 1\nrealtime:\n  ring_slots: 1\n",
             "2:14: udp.data_port: expected a whole number from 1 to 65535, found 0\n"
