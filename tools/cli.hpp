@@ -1,7 +1,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string>
 
 namespace lilo {
@@ -11,10 +15,35 @@ inline CLI::Validator above_zero() {
   return CLI::Validator(
       [](std::string& text) {
         double value = 0.0;
-        const bool good = CLI::detail::lexical_cast(text, value) && value > 0.0;
+        const bool good =
+            CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value);
         return good ? std::string() : "expected a number above 0, found '" + text + "'";
       },
       "above 0");
+}
+
+/// Option check: a number from `low` to `high`. CLI11's own lets nan pass.
+inline CLI::Validator within(double low, double high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        double value = std::numeric_limits<double>::quiet_NaN();
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+        return good ? std::string()
+                    : fmt::format("expected a number from {} to {}, found '{}'", low, high, text);
+      },
+      "");
+}
+
+/// Option check: a whole number, not below 0. CLI11's own turns -1 into the largest.
+inline CLI::Validator count() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
+        std::uint64_t value = 0;
+        const bool good = !text.empty() && digits && CLI::detail::lexical_cast(text, value);
+        return good ? std::string() : "expected a whole number from 0 on, found '" + text + "'";
+      },
+      "");
 }
 
 }  // namespace lilo

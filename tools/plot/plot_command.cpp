@@ -3,6 +3,7 @@
 #include "drivers/scan_source.hpp"
 #include "tools/bench/benchmark_set.hpp"
 #include "tools/bench/paper/cell.hpp"
+#include "tools/cli.hpp"
 #include "tools/eval/associate.hpp"
 #include "tools/plot/error_chart.hpp"
 #include "tools/plot/features_view.hpp"
@@ -157,7 +158,8 @@ void add_plot_command(CLI::App& app) {
   auto* input =
       sub->add_option("--input", options->input, "The recording the map or the scan comes from");
   sub->add_option("--config", options->config, "YAML configuration of the sensor");
-  auto* scan = sub->add_option("--scan", options->scan, "Draw only this scan, the first being 0");
+  auto* scan = sub->add_option("--scan", options->scan, "Draw only this scan, the first being 0")
+                   ->check(count());
   sub->add_flag("--features", options->features,
                 "With --scan: the image's edges, surfaces and ground, as profile paper sees them")
       ->needs(scan);

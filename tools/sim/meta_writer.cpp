@@ -5,8 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <fstream>
 
 namespace lilo::sim {
+
+namespace {
+constexpr const char* kMadeBy = "lilo sim";
+}  // namespace
 
 std::string sensor_name(Sensor sensor) {
   switch (sensor) {
@@ -22,10 +27,17 @@ std::string sensor_name(Sensor sensor) {
   return "unknown";
 }
 
+bool is_made_by_sim(const std::string& folder) {
+  std::ifstream file(folder + "/meta.json");
+  const auto meta = nlohmann::json::parse(file, nullptr, false);
+  return meta.is_object() && meta.value("made_by", nlohmann::json()) == kMadeBy;
+}
+
 void write_meta(const std::string& folder, const SimOptions& options, const SimSummary& summary,
                 const PathSummary& path, const Scene& scene, const Rotor& rotor) {
   const auto rounded = [](double v) { return std::round(v * 1e4) / 1e4; };
   nlohmann::ordered_json meta;
+  meta["made_by"] = kMadeBy;
   meta["sensor"] = sensor_name(options.sensor.sensor);
   meta["world"] = options.world;
   meta["seed"] = options.seed;

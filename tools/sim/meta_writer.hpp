@@ -14,6 +14,9 @@ namespace lilo::sim {
 void write_meta(const std::string& folder, const SimOptions& options, const SimSummary& summary,
                 const PathSummary& path, const Scene& scene, const Rotor& rotor);
 
+/// Whether there is a meta.json of ours in the folder.
+bool is_made_by_sim(const std::string& folder);
+
 std::string sensor_name(Sensor sensor);
 
 }  // namespace lilo::sim

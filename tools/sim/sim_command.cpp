@@ -52,6 +52,7 @@ std::string footer() {
 
 void run_sim(const CLI::App& command, sim::SimArguments& arguments) {
   sim::settle(command, arguments);
+  sim::check_folder(arguments);
   ProgressBar bar(!arguments.quiet);
   const sim::SimSummary summary =
       sim::simulate(arguments.options, arguments.folder, [&](double done) { bar(done); });

@@ -1,10 +1,13 @@
 #include "tools/sim/sim_options.hpp"
 
+#include "tools/cli.hpp"
+#include "tools/sim/meta_writer.hpp"
 #include "tools/sim/world.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <vector>
 
@@ -19,7 +22,7 @@ class Group {
   template <typename Value>
   CLI::Option* number(const char* option, Value& value, Value low, Value high, const char* about) {
     return command_.add_option(option, value, about)
-        ->check(CLI::Range(low, high).description(""))
+        ->check(within(static_cast<double>(low), static_cast<double>(high)))
         ->type_name(fmt::format("{}..{}", low, high))
         ->group(name_);
   }
@@ -74,7 +77,7 @@ void add_motion(CLI::App& command, SimOptions& options) {
                "Rate, rms, at which wheels or mast shake it while it drives");
   group.number("--shake-hz", motion.shake_hz, 0.5, 20.0, "How often")->capture_default_str();
   command.add_option("--sensor-height-m", options.sensor_height_m, "Default: the world's")
-      ->check(CLI::Range(0.2, 5.0).description(""))
+      ->check(within(0.2, 5.0))
       ->type_name("0.2..5")
       ->group("World and motion");
 }
@@ -165,14 +168,31 @@ std::int64_t parse_utc_ns(const std::string& text) {
 }  // namespace
 
 void add_options(CLI::App& command, SimArguments& arguments) {
-  command.add_option("OUT_DIR", arguments.folder, "Folder to write to; made if missing")
+  command
+      .add_option("OUT_DIR", arguments.folder,
+                  "Folder to write to, empty or of an earlier lilo sim; made if missing")
       ->required()
       ->type_name("");
   add_motion(command, arguments.options);
   add_sensor(command, arguments.options.sensor);
   add_clocks(command, arguments);
   add_faults(command, arguments.options);
+  command.add_flag("--force", arguments.force,
+                   "Write to OUT_DIR even if it holds files that are not lilo sim's");
   command.add_flag("--quiet", arguments.quiet, "No progress bar");
+}
+
+void check_folder(const SimArguments& arguments) {
+  const std::filesystem::path folder = arguments.folder;
+  if (arguments.force || !std::filesystem::exists(folder)) return;
+  if (!std::filesystem::is_directory(folder)) {
+    throw CLI::ValidationError("OUT_DIR", arguments.folder + ": expected a folder, found a file");
+  }
+  if (std::filesystem::is_empty(folder) || is_made_by_sim(arguments.folder)) return;
+  throw CLI::ValidationError(
+      "OUT_DIR", arguments.folder +
+                     ": expected an empty folder or one of an earlier lilo sim, found other files "
+                     "(--force writes there nevertheless)");
 }
 
 void settle(const CLI::App& command, SimArguments& arguments) {

@@ -14,6 +14,7 @@ struct SimArguments {
   std::string folder;
   std::string start_utc;         ///< seconds, kept as text: a double rounds them
   double hour_wrap_at_s = -1.0;  ///< negative: not asked for
+  bool force = false;            ///< whatever the folder holds
   bool quiet = false;
 };
 
@@ -22,5 +23,8 @@ void add_options(CLI::App& command, SimArguments& arguments);
 /// Defaults that depend on other options, and checks across options.
 /// Throws CLI::ValidationError naming the option.
 void settle(const CLI::App& command, SimArguments& arguments);
+
+/// Throws CLI::ValidationError where something of the user's could be overwritten.
+void check_folder(const SimArguments& arguments);
 
 }  // namespace lilo::sim
