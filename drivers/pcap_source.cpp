@@ -27,6 +27,14 @@ struct ClosePcap {
 using File = std::unique_ptr<std::FILE, CloseFile>;
 using Pcap = std::unique_ptr<pcap_t, ClosePcap>;
 
+/// What libpcap's complaint about a record means.
+std::string reason_of(const std::string& complaint) {
+  // A pcapng file may hold several; libpcap reads the packets before the second kind.
+  if (complaint.find("of the first interface") == std::string::npos)
+    return "ends inside a record or is damaged: " + complaint;
+  return "expected interfaces that are all alike, of the rest nothing is read: " + complaint;
+}
+
 std::string link_name(int link_type) {
   const char* name = pcap_datalink_val_to_name(link_type);
   return name != nullptr ? name : std::to_string(link_type);
@@ -112,8 +120,7 @@ ReadResult PcapSource::read(PacketView& packet, std::chrono::milliseconds) {
     const int result = pcap_next_ex(pcap_.get(), &header, &bytes);
     if (result != 1) {
       ended_ = true;
-      if (result == PCAP_ERROR)
-        error_ = name_ + ": ends inside a record or is damaged: " + pcap_geterr(pcap_.get());
+      if (result == PCAP_ERROR) error_ = name_ + ": " + reason_of(pcap_geterr(pcap_.get()));
       break;
     }
     const Frame frame = parse_frame(link_type_, std::as_bytes(std::span(bytes, header->caplen)));

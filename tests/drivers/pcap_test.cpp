@@ -177,6 +177,18 @@ TEST(PcapErrors, ATruncatedFileGivesWhatItHoldsAndSaysSo) {
   EXPECT_EQ(read_all(write_file("whole.pcap", whole)).error, "");
 }
 
+TEST(PcapErrors, InterfacesOfTwoLinkTypesAreCalledThat) {
+  std::string bytes = pcapng_bytes({{ethernet(kIp), kTime}});
+  for (const unsigned word : {1U, 20U, 113U, 0U, 20U}) {  // another interface: Linux cooked
+    for (unsigned k = 0; k < 4; ++k) bytes += static_cast<char>(word >> (8 * k) & 0xFFU);
+  }
+  const std::string path = write_file("two_links.pcapng", bytes);
+  const Read out = read_all(path);
+  EXPECT_EQ(out.payloads.size(), 1U);
+  EXPECT_EQ(out.error.rfind(path + ": expected interfaces that are all alike", 0), 0U) << out.error;
+  EXPECT_EQ(out.error.find("damaged"), std::string::npos);
+}
+
 TEST(PcapScans, CanBeReadFromStandardInput) {
   const std::string path = write_file("stdin.pcap", pcap_bytes(records_of(vlp16_packets(170, {}))));
   ASSERT_NE(std::freopen(path.c_str(), "rb", stdin), nullptr);
