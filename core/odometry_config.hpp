@@ -76,7 +76,7 @@ struct StandardConfig {
   double structure_kernel = 0.5;  ///< tighter: structure moves, hides and sways
   double data_weight = 0.1;       ///< neighbouring residuals are not independent: each counts less
   int segments = 2;               ///< pieces of the motion within one scan
-  int max_iterations = 8;
+  int max_iterations = 12;
   /// Process noise: power densities of the acceleration's white noise, how fast the motion may
   /// change. The least that is assumed; more is estimated on the way (standard/process_noise.hpp).
   double roll_pitch_density = 0.3;   ///< rad^2/s^3: suspension, rough ground

@@ -11,7 +11,7 @@ constexpr double kShortest_s = 0.01, kLongest_s = 0.5;  // between two scans tha
 
 }  // namespace
 
-void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns) {
+void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns, const Vector6d& variance) {
   const double interval_s = 1e-9 * static_cast<double>(stamp_ns - stamp_ns_);
   const Pose from = T_middle_;
   T_middle_ = T_middle;
@@ -25,7 +25,9 @@ void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns) {
       T_middle.translation_m - from.translation_m;
   velocity /= interval_s;
   if (observed_ == 2) {
-    const Vector6d square = (velocity - velocity_).cwiseAbs2();
+    // Three poses are in it, the middle one twice.
+    const Vector6d of_poses = 6.0 * variance / (interval_s * interval_s);
+    const Vector6d square = ((velocity - velocity_).cwiseAbs2() - of_poses).cwiseMax(0.0);
     const Vector6d density = square * (1.5 * 2.0 / (interval_s + interval_s_));
     const Vector6d shared = mean_by_kind(density);
     density_ += kNewest * (kBetweenScans * shared - density_);

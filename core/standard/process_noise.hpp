@@ -22,8 +22,10 @@ class ProcessNoise {
   /// estimate begins there and never falls below.
   explicit ProcessNoise(const Vector6d& nominal) : nominal_(nominal), density_(nominal) {}
 
-  /// The pose in the middle of a scan that was aligned, and the instant of it.
-  void observe(const Pose& T_middle, std::int64_t stamp_ns);
+  /// The pose in the middle of a scan that was aligned, and the instant of it. `variance`: of the
+  /// pose by the scan's returns alone (rad^2, m^2). It makes velocities differ as well, and along a
+  /// tunnel is all that does.
+  void observe(const Pose& T_middle, std::int64_t stamp_ns, const Vector6d& variance);
   /// What comes next does not continue what was observed.
   void interrupt() { observed_ = 0; }
 

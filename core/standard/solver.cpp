@@ -36,38 +36,10 @@ std::pair<Matrix6d, Vector6d> normal_equations(const ResidualSums& sums) {
 
 }  // namespace
 
-void LocalMaps::end_keyframe() {
-  for (CellMap* map : {&ground_fine, &ground_coarse, &structure_fine, &structure_coarse}) {
-    map->end_keyframe();
-  }
-}
-
-void LocalMaps::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
-  for (CellMap* map : {&ground_fine, &ground_coarse, &structure_fine, &structure_coarse}) {
-    map->forget_beyond(center_m, radius_m);
-  }
-}
-
-void LocalMaps::clear() {
-  for (CellMap* map : {&ground_fine, &ground_coarse, &structure_fine, &structure_coarse}) {
-    map->clear();
-  }
-}
-
-int LocalMaps::size() const {
-  return ground_fine.size() + ground_coarse.size() + structure_fine.size() +
-         structure_coarse.size();
-}
-
-std::uint64_t LocalMaps::refused() const {
-  return ground_fine.refused() + ground_coarse.refused() + structure_fine.refused() +
-         structure_coarse.refused();
-}
-
-/// Places the next features and looks for their cells in the fine maps. Many at a time, here and in
-/// match(), so that the memory's answers overlap. Returns how many.
+/// Places the next features, many at a time, here and in match(), so that the memory's answers
+/// overlap. Returns how many.
 std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t first,
-                            std::size_t stride, const LocalMaps& maps) {
+                            std::size_t stride) {
   std::size_t n = 0;
   for (std::size_t k = first; k < features.size() && n < asked_.size(); k += stride, ++n) {
     Asked& one = asked_[n];
@@ -76,37 +48,34 @@ std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t fi
     one.last = &last_[k];
     one.turned_m = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
     one.point_m = one.turned_m.cast<double>() + sampled_.origin_m(f.s);
-    one.place = maps.fine(f.kind).place_of(one.point_m, one.last->fine);
-  }
-  for (std::size_t j = 0; j < n; ++j) {
-    Asked& one = asked_[j];
-    one.cell = maps.fine(one.feature->kind).cell_at(one.place);
-    one.last->fine = one.cell;
   }
   return n;
 }
 
-/// Where the fine maps know too little the coarse ones are asked.
-void Solver::match(std::span<Asked> asked, LocalMaps& maps) {
+/// Where a level knows too little the next coarser one is asked.
+void Solver::match(std::span<Asked> asked, LocalMaps& maps, std::size_t finest) {
   std::array<Asked*, kAtATime> unmatched;
   std::size_t n = 0;
-  for (Asked& one : asked) {
-    one.match = maps.fine(one.feature->kind).match(one.cell, one.point_m);
-    if (one.match.information != nullptr) continue;
-    one.place = maps.coarse(one.feature->kind).place_of(one.point_m, one.last->coarse);
-    unmatched[n++] = &one;
-  }
-  for (Asked* one : std::span(unmatched).first(n)) {
-    one->cell = maps.coarse(one->feature->kind).cell_at(one->place);
-    one->last->coarse = one->cell;
-  }
-  for (Asked* one : std::span(unmatched).first(n)) {
-    one->match = maps.coarse(one->feature->kind).match(one->cell, one->point_m);
+  for (Asked& one : asked) unmatched[n++] = &one;
+  for (std::size_t level = finest; level < LocalMaps::kLevels && n > 0; ++level) {
+    const auto left = std::span(unmatched).first(n);
+    for (Asked* one : left) {
+      one->place = maps.at(level, one->feature->kind).place_of(one->point_m, (*one->last)[level]);
+    }
+    for (Asked* one : left) {
+      one->cell = maps.at(level, one->feature->kind).cell_at(one->place);
+      (*one->last)[level] = one->cell;
+    }
+    n = 0;
+    for (Asked* one : left) {
+      one->match = maps.at(level, one->feature->kind).match(one->cell, one->point_m);
+      if (one->match.information == nullptr) unmatched[n++] = one;
+    }
   }
 }
 
 void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
-                        Solution& solution) {
+                        std::size_t finest, Solution& solution) {
   sample(solution.trajectory, sampled_);
   for (ResidualSums& bin : bins_) bin.setZero();
   Sums sums;
@@ -114,10 +83,10 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   const float data_weight = config_.data_weight * static_cast<float>(stride);
   const float kernel_scale = stride > 1 ? kCoarseKernels : 1.0F;
   for (std::size_t k = 0, n = 0; k < features.size(); k += n * stride) {
-    n = look_up(features, k, stride, maps);
+    n = look_up(features, k, stride);
     solution.asked += static_cast<int>(n);
     const std::span asked = std::span(asked_).first(n);
-    match(asked, maps);
+    match(asked, maps, finest);
     for (const Asked& one : asked) {
       if (one.match.information == nullptr) continue;
       ++solution.matched;
@@ -181,6 +150,24 @@ Solver::Equations Solver::data_equations(double span_s, Matrix6d& data_informati
   return all;
 }
 
+/// Residuals that look the same way share what misleads them. The sums of a bin, as clusters, tell
+/// by how much that makes the pose less certain than independent residuals of one sigma would
+/// (Liang and Zeger, 1986). `step`: the last one, which the residuals have not seen yet.
+Vector6d Solver::design_effect(const Unknowns& step, double span_s) const {
+  Vector6d squares = Vector6d::Zero(), expected = Vector6d::Zero();
+  for (int bin = 0; bin <= kBins; ++bin) {
+    const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
+    const KnotWeights w = weights_at(static_cast<double>(bin) / kBins, config_.segments, span_s);
+    Vector6d moved = Vector6d::Zero();
+    for (int i = 0; i < 4; ++i) {
+      moved += w.weight[static_cast<std::size_t>(i)] * step.segment<6>(kKnotSize * w.first + 6 * i);
+    }
+    squares += (c - A * moved).cwiseAbs2();
+    expected += static_cast<double>(config_.data_weight) * A.diagonal();
+  }
+  return squares.cwiseQuotient(expected.cwiseMax(1e-9));
+}
+
 Solution Solver::unmoved(const Prior& prior) const {
   Solution solution;
   solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, config_.segments,
@@ -188,7 +175,8 @@ Solution Solver::unmoved(const Prior& prior) const {
   return solution;
 }
 
-Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior) {
+Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
+                       std::size_t finest) {
   // Far from the solution a part of the features shows the way as well as all of them.
   constexpr std::size_t kCoarseStride = 4;
   constexpr double kNear_rad = 3e-3, kNear_m = 0.03;
@@ -198,9 +186,9 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   std::size_t stride = kCoarseStride;
   Solution solution = unmoved(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
-  last_.assign(features.size(), {});
+  last_.assign(features.size(), LocalMaps::kNoCells);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
-    accumulate(features, stride, maps, solution);
+    accumulate(features, stride, maps, stride == 1 ? finest : LocalMaps::kUsual, solution);
     Equations data = data_equations(prior.span_s, solution.data_information);
     const Unknowns x = solution.trajectory.knots;
     auto& [H, b] = data;
@@ -218,6 +206,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     if (solution.iterations + 1 >= config_.max_iterations) stride = 1;
     if (solution.converged || solution.iterations == config_.max_iterations) {
       solution.end_information = marginal_of_last(H);
+      solution.design_effect = design_effect(step, prior.span_s);
     }
   }
   const KnotInformation noise = process_information(prior.acceleration_density, prior.span_s);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/standard/cell_map.hpp"
 #include "core/standard/feature_image.hpp"
+#include "core/standard/local_maps.hpp"
 #include "core/standard/motion_prior.hpp"
 #include "core/standard/trajectory.hpp"
 
@@ -14,27 +14,9 @@
 /// Alignment of one scan with the local map: Gauss-Newton over the knots of its trajectory.
 namespace lilo::standard {
 
-/// The maps, one per kind of feature, each at two resolutions: where the fine one knows too little
-/// the coarse one is asked.
-struct LocalMaps {
-  CellMap ground_fine, ground_coarse, structure_fine, structure_coarse;
-
-  CellMap& fine(Kind kind) { return kind == Kind::ground ? ground_fine : structure_fine; }
-  CellMap& coarse(Kind kind) { return kind == Kind::ground ? ground_coarse : structure_coarse; }
-  [[nodiscard]] const CellMap& fine(Kind kind) const {
-    return kind == Kind::ground ? ground_fine : structure_fine;
-  }
-
-  void end_keyframe();
-  void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
-  void clear();
-  [[nodiscard]] int size() const;               ///< cells
-  [[nodiscard]] std::uint64_t refused() const;  ///< points that found no room
-};
-
 struct SolverConfig {
   int segments = 1;
-  int max_iterations = 8;
+  int max_iterations = 12;
   float ground_kernel = 1.5F;     ///< Cauchy scale in sigmas of the map: ground is rough
   float structure_kernel = 0.5F;  ///< tighter: structure moves and hides
   float data_weight = 0.1F;  ///< neighbouring residuals are not independent: each counts for less
@@ -47,6 +29,8 @@ struct Solution {
   Matrix6d data_information = Matrix6d::Zero();
   /// Of the pose, from a motion known exactly until the scan began.
   Matrix6d motion_information = Matrix6d::Zero();
+  /// Variance of the pose over that of independent residuals of one sigma; by axis.
+  Vector6d design_effect = Vector6d::Zero();
   int asked = 0;                 ///< features looked up
   int matched = 0;               ///< features that found a distribution
   double inliers = 0;            ///< sum of robust weights
@@ -70,21 +54,19 @@ class Solver {
   }
   /// The prediction, as though nothing had matched.
   [[nodiscard]] Solution unmoved(const Prior& prior) const;
-  Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior);
+  /// `finest`: level of the maps to begin with once the solution is near.
+  Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
+                 std::size_t finest = LocalMaps::kUsual);
 
  private:
   static constexpr int kBins = 32;  // a scan's residuals share one of so many instants
   static constexpr std::size_t kAtATime = 32;
-  /// Where a feature was in the step before.
-  struct Cells {
-    std::int32_t fine = CellMap::kNone, coarse = CellMap::kNone;
-  };
   /// A feature under the trajectory, and what it matches.
   struct Asked {
     const Feature* feature = nullptr;
-    Cells* last = nullptr;
-    Eigen::Vector3f turned_m;  // in the odometry's axes, from the sensor
-    Eigen::Vector3d point_m;   // in the odometry's frame
+    LocalMaps::PerLevel* last = nullptr;  // its cells in the step before
+    Eigen::Vector3f turned_m;             // in the odometry's axes, from the sensor
+    Eigen::Vector3d point_m;              // in the odometry's frame
     CellMap::Place place;
     std::int32_t cell = CellMap::kNone;
     Match match;
@@ -98,18 +80,18 @@ class Solver {
     Unknowns b;
   };
   void accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
-                  Solution& solution);
-  std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride,
-                      const LocalMaps& maps);
-  static void match(std::span<Asked> asked, LocalMaps& maps);
+                  std::size_t finest, Solution& solution);
+  std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);
+  static void match(std::span<Asked> asked, LocalMaps& maps, std::size_t finest);
   void add_residual(const Asked& one, float kernel_scale, float data_weight, Sums& sums);
+  Vector6d design_effect(const Unknowns& step, double span_s) const;
   Equations data_equations(double span_s, Matrix6d& data_information) const;
 
   SolverConfig config_;
   Sampled sampled_;
   std::array<ResidualSums, kBins + 1> bins_;
   std::array<Asked, kAtATime> asked_;
-  std::vector<Cells> last_;
+  std::vector<LocalMaps::PerLevel> last_;
 };
 
 }  // namespace lilo::standard

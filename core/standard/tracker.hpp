@@ -142,6 +142,8 @@ class Tracker {
   Solution solution_;  // of the last scan
   Sampled sampled_;
   Held held_;
+  std::vector<LocalMaps::Point> points_;    // of the features that enter the map
+  std::size_t finest_ = LocalMaps::kUsual;  // level of the maps for these surroundings
   Drift drift_;
   ProcessNoise process_noise_;
   Footprint footprint_;
@@ -154,7 +156,8 @@ class Tracker {
   Pose T_odom_sensor_;
   int lost_scans_ = 0;
   std::uint32_t restarts_ = 0;
-  int keyframes_ = 0;  // in the map in force
+  int keyframes_ = 0;       // in the map in force
+  Vector6d design_effect_;  // mean of the last second
   Twist twist_;
   KnotInformation information_;  // of the pose and its rate at the last scan's end
   Pose T_odom_keyframe_;

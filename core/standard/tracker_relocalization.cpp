@@ -58,7 +58,7 @@ void Tracker::attempt_everywhere(const std::vector<Feature>& chosen, const Prior
   const double time_s = unseen_s() + span_of(timing_);
   const Reach reach{0.5 * kAcceleration_mps2 * time_s * time_s, kTurn_radps * time_s};
   if (drawn_at_ns_ != last_aligned_ns_) {  // since then it does not grow
-    relocalizer_.set_map(maps_.structure_coarse, T_end.translation_m);
+    relocalizer_.set_map(maps_.at(LocalMaps::kCoarse, Kind::structure), T_end.translation_m);
     drawn_at_ns_ = last_aligned_ns_;
   }
   attempts_[0] = solver_.solve(chosen, maps_, prior);

@@ -11,6 +11,7 @@ namespace lilo::standard {
 namespace {
 
 constexpr std::int64_t kScan_ns = 100'000'000;
+const Vector6d kExact = Vector6d::Zero();  // variance of a pose
 
 Vector6d nominal() {
   Vector6d density;
@@ -23,7 +24,7 @@ template <typename PoseAt>
 Vector6d density_after(ProcessNoise& noise, const PoseAt& pose_at) {
   for (std::int64_t scan = 0; scan < 300; ++scan) {
     const std::int64_t stamp_ns = scan * kScan_ns;
-    noise.observe(pose_at(1e-9 * static_cast<double>(stamp_ns)), stamp_ns);
+    noise.observe(pose_at(1e-9 * static_cast<double>(stamp_ns)), stamp_ns, kExact);
   }
   return noise.density();
 }
@@ -47,7 +48,8 @@ TEST(ProcessNoise, GrowsWithTheMotionOfItsOwnAxesOnly) {
   double sum = 0.0;
   for (std::int64_t scan = 0; scan < 5000; ++scan) {
     pitch_rad += kT_s * kRate_radps * normal(rng);
-    noise.observe({so3_exp({0.0, pitch_rad, 0.0}), Eigen::Vector3d::Zero()}, scan * kScan_ns);
+    noise.observe({so3_exp({0.0, pitch_rad, 0.0}), Eigen::Vector3d::Zero()}, scan * kScan_ns,
+                  kExact);
     if (scan >= 1000) sum += noise.density()[1] / 4000.0;
   }
   // Of two axes that share their noise one moves.
@@ -77,8 +79,27 @@ TEST(ProcessNoise, DoesNotTakeAJumpAcrossAnInterruptionForMotion) {
   noise.interrupt();
   density_after(noise, [&](double) { return there; });
   EXPECT_EQ(noise.density(), nominal());
-  noise.observe({}, 300 * kScan_ns + 2'000'000'000);
+  noise.observe({}, 300 * kScan_ns + 2'000'000'000, kExact);
   EXPECT_EQ(noise.density(), nominal());
+}
+
+// Along a tunnel a scan hardly tells the way. What its error makes of the velocity is no motion.
+TEST(ProcessNoise, OfWhatScansHardlyTellIsTheNominal) {
+  constexpr double kSigma_m = 0.5;
+  Vector6d variance = kExact;
+  variance[3] = kSigma_m * kSigma_m;
+  ProcessNoise told(nominal()), believed(nominal());
+  std::mt19937 rng(1);
+  std::normal_distribution<double> normal;
+  double told_sum = 0.0, believed_sum = 0.0;
+  for (std::int64_t scan = 0; scan < 2000; ++scan) {
+    const Pose T{Eigen::Quaterniond::Identity(), {kSigma_m * normal(rng), 0.0, 0.0}};
+    told.observe(T, scan * kScan_ns, variance);
+    believed.observe(T, scan * kScan_ns, kExact);
+    told_sum += told.density()[3];
+    believed_sum += believed.density()[3];
+  }
+  EXPECT_LT(told_sum, 0.6 * believed_sum);
 }
 
 constexpr int kSegments = 2;
