@@ -168,12 +168,16 @@ void solver_round(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
   standard::FeatureImage image(1024, {});
   const auto& all = image.build(scan);
-  standard::LocalMaps maps{empty_map(0.5F), empty_map(1.5F), empty_map(0.5F), empty_map(1.5F)};
+  const auto level = [](float cell_m) {
+    const standard::CellMapConfig config{.cell_m = cell_m, .capacity = 100000};
+    return std::array{config, config};
+  };
+  standard::LocalMaps maps({level(0.25F), level(0.5F), level(1.5F)});
+  std::vector<standard::LocalMaps::Point> points;
   for (const standard::Feature& f : all) {
-    const bool ground = f.kind == standard::Kind::ground;
-    fill(ground ? maps.ground_fine : maps.structure_fine, {f});
-    fill(ground ? maps.ground_coarse : maps.structure_coarse, {f});
+    points.push_back({position_of(f), {f.dx_m, f.dy_m, f.dz_m}, f.kind});
   }
+  maps.insert(points, standard::LocalMaps::kUsual);
   standard::Selection selection(1200, 1500);
   const auto& chosen = selection.choose(all);
   standard::Solver solver({.segments = 2, .max_iterations = 1}, 4096);
