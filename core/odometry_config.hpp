@@ -73,7 +73,7 @@ struct StandardConfig {
   double keyframe_rad = 2.0 * std::numbers::pi / 180.0;  ///< or turned so far
   double noise_m = 0.015;                                ///< 1 sigma of a return across a surface
   double ground_kernel = 1.5;     ///< Cauchy scale in sigmas of the map: ground is rough
-  double structure_kernel = 0.5;  ///< tighter: structure moves, hides and sways
+  double structure_kernel = 0.7;  ///< tighter: structure moves, hides and sways
   double data_weight = 0.1;       ///< neighbouring residuals are not independent: each counts less
   int segments = 2;               ///< pieces of the motion within one scan
   int max_iterations = 12;

@@ -1,6 +1,7 @@
 #include "core/standard/footprint.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 namespace lilo::standard {
@@ -83,6 +84,26 @@ void Plan::assign(const Outline& scan, const Eigen::Quaterniond& begin,
   for (std::size_t k = 0; k < n; ++k) {
     x[k] = xx * scan.x_m[k] + xy * scan.y_m[k] + xz * scan.z_m[k];
     y[k] = yx * scan.x_m[k] + yy * scan.y_m[k] + yz * scan.z_m[k];
+  }
+}
+
+void Plan::assign_turning(const Outline& scan, const Eigen::Quaterniond& begin,
+                          const Eigen::Quaterniond& end, Share share) {
+  constexpr std::size_t kInstants = 16;
+  std::array<Eigen::Matrix<float, 2, 3>, kInstants> R;
+  for (std::size_t k = 0; k < kInstants; ++k) {
+    const double middle = (static_cast<double>(k) + 0.5) / kInstants;
+    R[k] = (kPerMetre * begin.slerp(middle, end).toRotationMatrix().topRows<2>()).cast<float>();
+  }
+  for (std::vector<float>* part : {&x, &y}) part->resize(scan.s.size());
+  s = scan.s;
+  const std::size_t n = count_in(share, s.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto instant = static_cast<std::size_t>(s[k] * kInstants);
+    const Eigen::Vector2f seen = R[std::min(instant, kInstants - 1)] *
+                                 Eigen::Vector3f(scan.x_m[k], scan.y_m[k], scan.z_m[k]);
+    x[k] = seen.x();
+    y[k] = seen.y();
   }
 }
 

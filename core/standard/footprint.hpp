@@ -39,6 +39,9 @@ struct Plan {
   /// keep the places they had.
   void assign(const Outline& scan, const Eigen::Quaterniond& begin, const Eigen::Quaterniond& end,
               Share share = Share::all);
+  /// The same for a sensor that may turn fast: each point by the rotation at its firing.
+  void assign_turning(const Outline& scan, const Eigen::Quaterniond& begin,
+                      const Eigen::Quaterniond& end, Share share);
 };
 
 /// The area that what stands takes up on the ground, seen from above, when scans are laid over each

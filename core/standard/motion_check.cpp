@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lilo::standard {
 namespace {
 
 constexpr double kClearly = 2.0;  // sigmas
 constexpr int kOnEnd = 2;
-// In steps of about a cell in the time that all scans take. A truck drives off slowly, so that the
-// lowest speeds are passed whatever it does later.
+// In steps of about a cell in the time that all scans take.
 constexpr std::array<double, 4> kSpeeds_mps{1.0, 2.0, 3.0, 4.0};
 
 }  // namespace
@@ -38,11 +38,15 @@ void MotionCheck::see(const std::vector<Feature>& features, const Pose& T_begin,
 }
 
 MotionCheck::Looks MotionCheck::look(const Eigen::Vector2d& axis, Share share) {
-  const Eigen::Vector2d one_mps = kSpeeds_mps[static_cast<std::size_t>(speed_)] * axis;
-  const Eigen::Vector2d other_mps(-one_mps.y(), one_mps.x());
   const auto cells = [&](const Eigen::Vector2d& more_mps) { return cells_under(more_mps, share); };
-  return {cells(Eigen::Vector2d::Zero()),
-          std::min({cells(one_mps), cells(-one_mps), cells(other_mps), cells(-other_mps)})};
+  Looks looks{cells(Eigen::Vector2d::Zero()), std::numeric_limits<int>::max()};
+  for (const double speed_mps : kSpeeds_mps) {
+    const Eigen::Vector2d one_mps = speed_mps * axis;
+    const Eigen::Vector2d other_mps(-one_mps.y(), one_mps.x());
+    looks.least = std::min(
+        {looks.least, cells(one_mps), cells(-one_mps), cells(other_mps), cells(-other_mps)});
+  }
+  return looks;
 }
 
 bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
@@ -64,7 +68,6 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
 bool MotionCheck::is_refuted(const Eigen::Vector2d& axis) {
   if (count_ < kScans) return false;
   refuted_ = is_clearly_better(axis) ? refuted_ + 1 : 0;
-  if (refuted_ == 0) speed_ = (speed_ + 1) % static_cast<int>(kSpeeds_mps.size());
   return refuted_ >= kOnEnd;
 }
 

@@ -51,7 +51,6 @@ class MotionCheck {
   std::array<Seen, kScans> seen_;
   std::size_t count_ = 0, newest_ = 0;
   int refuted_ = 0;  // times on end
-  int speed_ = 0;    // which one is tried
   Outline outline_;  // of the newest
   Footprint footprint_;
 };

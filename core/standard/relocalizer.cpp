@@ -18,10 +18,15 @@ int wide_steps_in(double reach, double step) {
   return static_cast<int>(std::ceil(reach / (kWide * step)));
 }
 
+double differ(double a_rad, double b_rad) {
+  return std::abs(std::remainder(a_rad - b_rad, 2.0 * std::numbers::pi));
+}
+
 /// Whether alignments from both would come to the same place.
 bool are_alike(const Displacement& a, const Displacement& b) {
   constexpr double kAlong_m = 1.5, kYaw_rad = 0.1;
-  return (a.along_m - b.along_m).norm() < kAlong_m && std::abs(a.yaw_rad - b.yaw_rad) < kYaw_rad;
+  return (a.along_m - b.along_m).norm() < kAlong_m && differ(a.yaw_rad, b.yaw_rad) < kYaw_rad &&
+         differ(a.begin_yaw_rad, b.begin_yaw_rad) < kYaw_rad;
 }
 
 }  // namespace
@@ -55,7 +60,9 @@ void Relocalizer::set_map(const CellMap& structure, const Eigen::Vector3d& cente
 }
 
 std::span<const Displacement> Relocalizer::search(const std::vector<Feature>& features,
-                                                  const Trajectory& predicted, const Reach& reach) {
+                                                  const Trajectory& predicted, const Reach& reach,
+                                                  Change change) {
+  change_ = change;
   outline_.assign(features);
   begin_ = predicted.at(0.0);
   end_ = predicted.end();
@@ -69,14 +76,27 @@ std::span<const Displacement> Relocalizer::search(const std::vector<Feature>& fe
 void Relocalizer::look_everywhere(const Reach& reach) {
   const int farthest = wide_steps_in(std::min(reach.along_m, kFarthest.along_m), kStep_m);
   const int turns = wide_steps_in(std::min(reach.yaw_rad, kFarthest.yaw_rad), kStep_rad);
+  const int begin_turns =
+      change_ == Change::during ? wide_steps_in(reach.begin_yaw_rad, kStep_rad) : 0;
   for (int yaw = -turns; yaw <= turns; ++yaw) {
     const double yaw_rad = kWide * kStep_rad * yaw;
-    turn(thick_map_, yaw_rad);
-    for (int x = -farthest; x <= farthest; ++x) {
-      for (int y = -farthest; y <= farthest; ++y) {
-        if (x * x + y * y > farthest * farthest) continue;
-        look(thick_map_, {kWide * kStep_m * Eigen::Vector2d(x, y), yaw_rad});
-      }
+    if (change_ == Change::before) look_at_turn({{0.0, 0.0}, yaw_rad, yaw_rad}, farthest);
+    if (change_ == Change::before) continue;
+    for (int begin = -begin_turns; begin <= begin_turns; ++begin) {
+      look_at_turn({{0.0, 0.0}, yaw_rad, kWide * kStep_rad * begin}, farthest);
+    }
+  }
+}
+
+/// At all places that are so many wide steps away, at most.
+void Relocalizer::look_at_turn(const Displacement& turned, int farthest) {
+  turn(thick_map_, turned);
+  Displacement by = turned;
+  for (int x = -farthest; x <= farthest; ++x) {
+    for (int y = -farthest; y <= farthest; ++y) {
+      if (x * x + y * y > farthest * farthest) continue;
+      by.along_m = kWide * kStep_m * Eigen::Vector2d(x, y);
+      look(thick_map_, by);
     }
   }
 }
@@ -91,11 +111,14 @@ void Relocalizer::look_around_the_best() {
   for (std::size_t k = 0; k < best; ++k) {
     const Displacement middle = looks_[k].by;
     for (int yaw = -1; yaw <= 1; ++yaw) {
-      const double yaw_rad = middle.yaw_rad + kStep_rad * yaw;
-      turn(map_, yaw_rad);
+      Displacement by = middle;
+      by.yaw_rad += kStep_rad * yaw;
+      if (change_ == Change::before) by.begin_yaw_rad = by.yaw_rad;
+      turn(map_, by);
       for (int x = -1; x <= 1; ++x) {
         for (int y = -1; y <= 1; ++y) {
-          look(map_, {middle.along_m + kStep_m * Eigen::Vector2d(x, y), yaw_rad});
+          by.along_m = middle.along_m + kStep_m * Eigen::Vector2d(x, y);
+          look(map_, by);
         }
       }
     }
@@ -116,14 +139,15 @@ void Relocalizer::choose() {
 }
 
 /// For looks with that turn, at most so far along. The sensor's way during the scan turns with it.
-void Relocalizer::turn(Footprint& map, double yaw_rad) {
-  const Displacement by{{0.0, 0.0}, yaw_rad};
-  plan_.assign(outline_, displaced(begin_, by).rotation, displaced(end_, by).rotation,
-               Share::quarter);
+void Relocalizer::turn(Footprint& map, const Displacement& turned) {
+  const Eigen::Quaterniond at_begin(so3_exp({0.0, 0.0, turned.begin_yaw_rad})),
+      at_end(so3_exp({0.0, 0.0, turned.yaw_rad}));
+  plan_.assign_turning(outline_, at_begin * begin_.rotation, at_end * end_.rotation,
+                       Share::quarter);
   const Eigen::Vector2d way_m = (end_.translation_m - begin_.translation_m).head<2>();
   const Eigen::Vector2d end_m = end_.translation_m.head<2>() - center_m_;
   constexpr double kMost_m = kFarthest.along_m + (kWide + 1.0) * kStep_m;
-  map.aim(plan_, end_m - Eigen::Rotation2Dd(yaw_rad) * way_m, end_m, Share::quarter,
+  map.aim(plan_, end_m - Eigen::Rotation2Dd(turned.begin_yaw_rad) * way_m, end_m, Share::quarter,
           static_cast<int>(kMost_m * Footprint::kPerMetre));
 }
 

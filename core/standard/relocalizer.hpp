@@ -7,22 +7,31 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
 namespace lilo::standard {
 
 /// How a pose differs from the one predicted: moved along the ground and turned about the upright.
-/// Odometry axes.
+/// Odometry axes. A whole scan is moved alike; from its first firing to its last the turn changes
+/// evenly.
 struct Displacement {
   Eigen::Vector2d along_m = Eigen::Vector2d::Zero();
-  double yaw_rad = 0.0;
+  double yaw_rad = 0.0;        ///< of the last firing
+  double begin_yaw_rad = 0.0;  ///< of the first
 };
 Pose displaced(const Pose& T, const Displacement& by);
+
+/// What the sensor may have done other than predicted: turned and moved while it was unseen, then
+/// the whole scan is displaced; or begun to turn during this scan.
+enum class Change : std::uint8_t { before, during };
 
 /// How far a displacement may go, either way.
 struct Reach {
   double along_m = 0.0, yaw_rad = 0.0;
+  double begin_yaw_rad = 0.0;  ///< for Change::during
 };
 
 /// Where in the map the sensor may be, when nothing told for a while how it moved.
@@ -37,7 +46,7 @@ struct Reach {
 class Relocalizer {
  public:
   static constexpr std::size_t kMostPlaces = 3;
-  static constexpr Reach kFarthest{12.5, 0.8};
+  static constexpr Reach kFarthest{12.5, std::numbers::pi, 0.0};
 
   /// `most_features`: of one scan.
   explicit Relocalizer(std::size_t most_features);
@@ -48,7 +57,8 @@ class Relocalizer {
   /// The likeliest displacements from where the scan was predicted to be, the best one first, all
   /// unlike each other. Farther than kFarthest none is looked for. Lives until the next call.
   std::span<const Displacement> search(const std::vector<Feature>& features,
-                                       const Trajectory& predicted, const Reach& reach);
+                                       const Trajectory& predicted, const Reach& reach,
+                                       Change change = Change::before);
 
  private:
   struct Look {
@@ -58,7 +68,8 @@ class Relocalizer {
   void look_everywhere(const Reach& reach);
   void look_around_the_best();
   void choose();
-  void turn(Footprint& map, double yaw_rad);
+  void look_at_turn(const Displacement& turned, int farthest);
+  void turn(Footprint& map, const Displacement& turned);
   void look(const Footprint& map, const Displacement& by);
 
   Eigen::Vector2d center_m_ = Eigen::Vector2d::Zero();
@@ -66,6 +77,7 @@ class Relocalizer {
   Outline outline_;
   Plan plan_;
   Pose begin_, end_;  // as predicted
+  Change change_ = Change::before;
   std::vector<Look> looks_;
   std::array<Displacement, kMostPlaces> places_;
   std::size_t place_count_ = 0;

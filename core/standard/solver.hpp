@@ -18,7 +18,7 @@ struct SolverConfig {
   int segments = 1;
   int max_iterations = 12;
   float ground_kernel = 1.5F;     ///< Cauchy scale in sigmas of the map: ground is rough
-  float structure_kernel = 0.5F;  ///< tighter: structure moves and hides
+  float structure_kernel = 0.7F;  ///< tighter: structure moves and hides
   float data_weight = 0.1F;  ///< neighbouring residuals are not independent: each counts for less
 };
 

@@ -98,17 +98,26 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
   hook(Stage::filter);
   timing_ = {scan.start_ns, scan.end_ns, scan.motion_compensated};
   finest_ = finest_level(chosen);
+  if (chosen.size() >= kMinFeatures && is_gone(chosen)) {
+    start_anew();
+    ++restarts_;
+  }
   remember(features, chosen);
   const Prior prior = predict(timing_);
   solution_ = solve(scan, chosen, prior);
-  status_ = status_of(scan, solution_, chosen.size());
-  if (status_ != TrackingStatus::lost) last_aligned_ns_ = timing_.end_ns;
+  status_ = status_of(scan, solution_, chosen);
+  is_doubtful_ = relative_fit(solution_, chosen) < kDoubtful;
+  is_explained_ = status_ != TrackingStatus::lost && is_explained(solution_, chosen);
+  if (is_explained_) {
+    last_aligned_ns_ = timing_.end_ns;
+    learn_fit(chosen);
+  }
   observe_motion();
   accept(timing_, prior, solution_);
   if (seen_count_ > 1 && status_ != TrackingStatus::lost) {
     note_track(seen_[seen_count_ - 1], solution_.trajectory.at(0.0), T_odom_sensor_);
   }
-  const bool in_vain = status_ == TrackingStatus::lost && chosen.size() >= kMinFeatures;
+  const bool in_vain = !is_explained_ && chosen.size() >= kMinFeatures;
   lost_scans_ = in_vain ? lost_scans_ + 1 : 0;
   if (is_refuted(chosen)) {
     status_ = TrackingStatus::lost;
@@ -122,7 +131,7 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
 Solution Tracker::solve(const Scan& scan, const std::vector<Feature>& chosen, const Prior& prior) {
   if (scan_count_ == 1) return start();
   if (chosen.size() >= kMinFeatures && may_be_elsewhere()) return relocalize(scan, chosen, prior);
-  return solver_.solve(chosen, maps_, prior, finest_);
+  return follow_turn(solver_.solve(chosen, maps_, prior, finest_), chosen, prior);
 }
 
 void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
@@ -166,10 +175,9 @@ Prior Tracker::predict(const Timing& scan) const {
   // Returns that were compensated all belong to the end: the trajectory reaches back to the last.
   prior.span_s = scan.motion_compensated ? since_s : duration_s;
   if (prior.span_s <= 0.0) prior.span_s = duration_s;
-  // Longer, and either the clock was set or the sensor was off: no reason to have moved on.
-  constexpr double kLongestGap_s = 5.0;
+  // Longer, and it is looked for in the old map only where it was: the clock may have been set.
   const double unseen_s = since_s - prior.span_s;
-  const double gap_s = unseen_s > kLongestGap_s ? 0.0 : std::max(0.0, unseen_s);
+  const double gap_s = unseen_s > kSearchable_s ? 0.0 : std::max(0.0, unseen_s);
   prior.T_begin = moved(T_odom_sensor_, twist_, gap_s);
   prior.twist = twist_;
   prior.acceleration_density = process_noise_.density();
@@ -178,19 +186,20 @@ Prior Tracker::predict(const Timing& scan) const {
 }
 
 TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
-                                  std::size_t feature_count) const {
+                                  const std::vector<Feature>& chosen) const {
   // Of the features. A map of one scan, a tenth of an HDL-64E's, knows little of an open place.
   const double min_matched = keyframes_ < kGrown ? 0.05 : 0.2;
   constexpr double kMinWeight = 0.3;  // mean robust weight; a good alignment has 0.7 and more
   if (scan_count_ == 0) return TrackingStatus::initializing;
   const double matched = solution.matched;
   if (matched < static_cast<double>(kMinFeatures) ||
-      matched < min_matched * static_cast<double>(feature_count) ||
-      solution.inliers < kMinWeight * matched) {
+      matched < min_matched * static_cast<double>(chosen.size()) ||
+      solution.inliers < kMinWeight * matched || relative_fit(solution, chosen) < kNothing) {
     return TrackingStatus::lost;
   }
   if (seen_count_ > 0 && !stands_) return TrackingStatus::initializing;  // or so it may be
-  return scan.complete && solution.converged ? TrackingStatus::tracking : TrackingStatus::degraded;
+  const bool is_sure = solution.converged && relative_fit(solution, chosen) > kDoubtful;
+  return scan.complete && is_sure ? TrackingStatus::tracking : TrackingStatus::degraded;
 }
 
 void Tracker::observe_motion() {

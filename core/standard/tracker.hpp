@@ -27,9 +27,12 @@ class Tracker {
 
  private:
   static constexpr std::size_t kScansToDecide = 6;
-  static constexpr int kYoung = 5;           // keyframes of a map that may know too little
-  static constexpr int kGrown = 15;          // keyframes of a map that must know where it is
-  static constexpr double kUnseen_s = 0.35;  // for so long a prediction is good to half a cell
+  static constexpr int kYoung = 5;              // keyframes of a map that may know too little
+  static constexpr int kGrown = 15;             // keyframes of a map that must know where it is
+  static constexpr double kUnseen_s = 0.35;     // for so long a prediction is good to half a cell
+  static constexpr double kDoubtful = 0.55;     // of what fits usually: a better one may be missed
+  static constexpr double kNothing = 0.25;      // chance alone
+  static constexpr double kSearchable_s = 2.5;  // later it may be farther than Relocalizer looks
   struct Timing {
     std::int64_t start_ns = 0, end_ns = 0;
     bool motion_compensated = false;
@@ -74,13 +77,27 @@ class Tracker {
   void accept(const Timing& scan, const Prior& prior, const Solution& solution);
   bool is_refuted(const std::vector<Feature>& chosen);
   [[nodiscard]] TrackingStatus status_of(const Scan& scan, const Solution& solution,
-                                         std::size_t feature_count) const;
+                                         const std::vector<Feature>& chosen) const;
   [[nodiscard]] Estimate estimate(const Scan& scan, const Solution& solution,
                                   const std::vector<Feature>& chosen) const;
   [[nodiscard]] Matrix6d alignment_covariance() const;
   [[nodiscard]] Matrix6d sensor_covariance() const;
 
   // The way back into the map, in tracker_relocalization.cpp.
+  [[nodiscard]] double relative_fit(const Solution& solution,
+                                    const std::vector<Feature>& chosen) const;
+  void learn_fit(const std::vector<Feature>& chosen);
+  [[nodiscard]] bool is_explained(const Solution& solution,
+                                  const std::vector<Feature>& chosen) const;
+  Solution follow_turn(const Solution& found, const std::vector<Feature>& chosen,
+                       const Prior& prior);
+  Solution solve_turned(const Displacement& by, const std::vector<Feature>& chosen, Prior prior);
+  void draw_map(const Eigen::Vector3d& center_m);
+  [[nodiscard]] bool is_unsearchable() const;
+  [[nodiscard]] bool stood() const;
+  bool is_gone(const std::vector<Feature>& chosen);
+  [[nodiscard]] bool is_in_place(const Solution& found, const Prior& prior,
+                                 const std::vector<Feature>& chosen) const;
   [[nodiscard]] double unseen_s() const;
   [[nodiscard]] bool may_be_elsewhere() const;
   Solution relocalize(const Scan& scan, const std::vector<Feature>& chosen, const Prior& prior);
@@ -164,6 +181,9 @@ class Tracker {
   std::int64_t last_end_ns_ = 0;
   std::int64_t last_aligned_ns_ = 0;  // end of the last scan that was not lost
   std::int64_t drawn_at_ns_ = 0;      // the same, when the relocalizer was given the map
+  double usual_fit_ = 0.0;  // the part of structure that fits the map, of late; 0: not known
+  // The last scan: fitted much less than usual; may be right even so.
+  bool is_doubtful_ = false, is_explained_ = true;
   int scan_count_ = 0;
   TrackingStatus status_ = TrackingStatus::initializing;
   std::array<Seen, kScansToDecide> seen_;  // the first scans, until the motion is known

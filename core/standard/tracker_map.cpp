@@ -23,7 +23,7 @@ void Tracker::grow_map(const Timing& scan, const std::vector<Feature>& features,
     }
     insert_held();
   }
-  if (lost) return;
+  if (lost || !is_explained_) return;
   const Pose moved_by = T_odom_keyframe_.inverse() * T_odom_sensor_;
   if (scan_count_ > 0 && !is_young(solution) && moved_by.translation_m.norm() < c.keyframe_m &&
       so3_log(moved_by.rotation).norm() < c.keyframe_rad) {

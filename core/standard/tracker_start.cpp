@@ -53,6 +53,7 @@ void Tracker::start_anew() {
   stand_at_origin();
   maps_.clear();
   seen_count_ = 0;
+  usual_fit_ = 0.0;
   scan_count_ = lost_scans_ = keyframes_ = 0;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <random>
 #include <utility>
@@ -78,11 +79,33 @@ TEST(Relocalizer, FindsWhereAScanWasTakenToAStep) {
   for (const double speed_mps : {0.0, 20.0}) {
     for (const Displacement& by :
          {Displacement{}, Displacement{{3.3, -2.1}, 0.4}, Displacement{{-9.0, 7.4}, -0.73},
-          Displacement{{0.4, 11.0}, 0.1}}) {
+          Displacement{{0.4, 11.0}, 0.1}, Displacement{{-3.0, 1.2}, 2.9},
+          Displacement{{5.2, 4.4}, -1.9}}) {
       const auto [along_m, yaw_rad] = error_of_best(speed_mps, by);
       EXPECT_LT(along_m, 1.0) << by.along_m.transpose() << " at " << speed_mps << " m/s";
       EXPECT_LT(yaw_rad, 0.05) << by.yaw_rad << " at " << speed_mps << " m/s";
     }
+  }
+}
+
+// A sensor that stood begins to spin; and one whose last pose was wrong already.
+TEST(Relocalizer, FindsATurnBegunDuringTheScan) {
+  const auto posts_m = posts_around(kCenter_m, 200);
+  Relocalizer relocalizer(1000);
+  relocalizer.set_map(map_of(posts_m), kCenter_m);
+  const Trajectory predicted = trajectory_to(pose_at(0.0, 0.0, 0.3), 0.0);
+  for (const auto& [begin_rad, end_rad] :
+       {std::pair(0.0, 0.6), std::pair(0.0, -0.35), std::pair(0.2, 0.75), std::pair(-0.3, 0.1)}) {
+    Trajectory truth = predicted;
+    truth.T_begin = displaced(predicted.T_begin, {{0.0, 0.0}, begin_rad});
+    truth.twist.angular_radps.z() = (end_rad - begin_rad) / kSpan_s;
+    const Reach reach{0.0, 0.8, std::abs(begin_rad) > 0.0 ? 0.4 : 0.0};
+    const auto places =
+        relocalizer.search(seen_from(truth, posts_m), predicted, reach, Change::during);
+    ASSERT_FALSE(places.empty());
+    EXPECT_NEAR(places[0].yaw_rad, end_rad, 0.06);
+    EXPECT_NEAR(places[0].begin_yaw_rad, begin_rad, 0.11);
+    EXPECT_LT(places[0].along_m.norm(), 0.1);
   }
 }
 
