@@ -56,7 +56,10 @@ class RawDrive : public testing::Test {
     return "opened";
   }
 
-  std::string drive_ = testing::TempDir() + "/2011_09_26_drive_0001_sync";
+  // Tests run side by side: each has a folder of its own.
+  std::string drive_ = testing::TempDir() + '/' +
+                       testing::UnitTest::GetInstance()->current_test_info()->name() +
+                       "/2011_09_26_drive_0001_sync";
   std::string points_ = drive_ + "/velodyne_points";
   std::vector<float> stored_;
 };
