@@ -84,7 +84,7 @@ Solution Tracker::follow_turn(const Solution& found, const std::vector<Feature>&
 /// Aligns a scan that began where it was predicted to, and ended displaced.
 Solution Tracker::solve_turned(const Displacement& by, const std::vector<Feature>& chosen,
                                Prior prior) {
-  constexpr double kTurn_radps = 1.0, kSpeed_mps = 1.0;  // 1 sigma
+  constexpr double kRate_radps = 1.0, kSpeed_mps = 1.0;  // 1 sigma
   const Pose T_end = displaced(moved(prior.T_begin, prior.twist, prior.span_s), by);
   prior.T_begin = displaced(prior.T_begin, {by.along_m, by.begin_yaw_rad, by.begin_yaw_rad});
   prior.twist = twist_between(prior.T_begin, T_end, prior.span_s);
@@ -95,7 +95,7 @@ Solution Tracker::solve_turned(const Displacement& by, const std::vector<Feature
   }
   prior.begin_information.setZero();
   prior.begin_information.topLeftCorner<6, 6>() = of_pose.inverse();
-  prior.begin_information.diagonal().segment<3>(6).setConstant(1.0 / (kTurn_radps * kTurn_radps));
+  prior.begin_information.diagonal().segment<3>(6).setConstant(1.0 / (kRate_radps * kRate_radps));
   prior.begin_information.diagonal().tail<3>().setConstant(1.0 / (kSpeed_mps * kSpeed_mps));
   return solver_.solve(chosen, maps_, prior, finest_);
 }

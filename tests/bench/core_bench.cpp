@@ -174,6 +174,7 @@ void solver_round(benchmark::State& state) {
   };
   standard::LocalMaps maps({level(0.25F), level(0.5F), level(1.5F)});
   std::vector<standard::LocalMaps::Point> points;
+  points.reserve(all.size());
   for (const standard::Feature& f : all) {
     points.push_back({position_of(f), {f.dx_m, f.dy_m, f.dz_m}, f.kind});
   }

@@ -21,8 +21,10 @@ LocalMaps maps() {
 std::vector<LocalMaps::Point> wall(double half_width_m) {
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> along(-half_width_m, half_width_m);
+  constexpr int kPoints = 3000;
   std::vector<LocalMaps::Point> points;
-  for (int k = 0; k < 3000; ++k) {
+  points.reserve(kPoints);
+  for (int k = 0; k < kPoints; ++k) {
     points.push_back({{4.0, along(rng), along(rng)}, Eigen::Vector3f::Zero(), Kind::structure});
   }
   return points;

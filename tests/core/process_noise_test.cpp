@@ -74,7 +74,7 @@ TEST(ProcessNoise, CalmsDownWithTheMotion) {
 // A pose put right, a new map or a gap is no motion.
 TEST(ProcessNoise, DoesNotTakeAJumpAcrossAnInterruptionForMotion) {
   ProcessNoise noise(nominal());
-  const Pose there{so3_exp({0.5, 0.2, 1.0}), {7.0, 8.0, 9.0}};
+  Pose there{so3_exp({0.5, 0.2, 1.0}), {7.0, 8.0, 9.0}};
   density_after(noise, [](double) { return Pose{}; });
   noise.interrupt();
   density_after(noise, [&](double) { return there; });

@@ -34,6 +34,7 @@ LocalMaps map_of(const std::vector<Eigen::Vector3d>& points, const Pose& T_odom_
   };
   LocalMaps maps({level(0.25F), level(0.5F), level(1.5F)});
   std::vector<LocalMaps::Point> of_map;
+  of_map.reserve(points.size());
   for (const Eigen::Vector3d& p : points) {
     of_map.push_back({T_odom_room * p, Eigen::Vector3f::Zero(), Kind::structure});
   }
