@@ -24,13 +24,12 @@ class ProcessNoise {
 
   /// The pose in the middle of a scan that was aligned, and the instant of it. `variance`: of the
   /// pose by the scan's returns alone (rad^2, m^2). It makes velocities differ as well, and along a
-  /// tunnel is all that does.
+  /// tunnel is all that does. Where it is not finite the scan told nothing, and the estimate stays.
   void observe(const Pose& T_middle, std::int64_t stamp_ns, const Vector6d& variance);
   /// What comes next does not continue what was observed.
   void interrupt() { observed_ = 0; }
 
   [[nodiscard]] const Vector6d& density() const { return density_; }
-  [[nodiscard]] const Vector6d& nominal() const { return nominal_; }
 
  private:
   Vector6d nominal_, density_;

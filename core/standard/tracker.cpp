@@ -57,7 +57,7 @@ Vector6d nominal_density(const StandardConfig& c) {
 }
 
 /// The level of the maps that these surroundings ask for: half cells where more than half of what
-/// stands is near, as in rooms. From 4 to 6 m the errors hardly change.
+/// stands is near, as in rooms.
 std::size_t finest_level(const std::vector<Feature>& chosen) {
   constexpr float kNarrow_m = 5.0F;
   int near = 0, all = 0;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -100,6 +101,14 @@ TEST(ProcessNoise, OfWhatScansHardlyTellIsTheNominal) {
     believed_sum += believed.density()[3];
   }
   EXPECT_LT(told_sum, 0.6 * believed_sum);
+}
+
+// A scan of bare level ground may leave the information singular.
+TEST(ProcessNoise, SurvivesAVarianceThatIsNoNumber) {
+  ProcessNoise noise(nominal());
+  const Vector6d unknown = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  for (std::int64_t scan = 0; scan < 5; ++scan) noise.observe({}, scan * kScan_ns, unknown);
+  EXPECT_EQ(noise.density(), nominal());
 }
 
 constexpr int kSegments = 2;
