@@ -5,6 +5,8 @@
 #include "tools/sim/simulate.hpp"
 #include "tools/trajectory.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -38,5 +40,25 @@ inline Recording simulated(const sim::SimOptions& options) {
   }
   return read_recording(folder.path(), sensor);
 }
+
+inline Recording recording_of(const char* world, const sim::MotionOptions& motion,
+                              std::uint64_t seed = 3) {
+  sim::SimOptions options;
+  options.world = world;
+  options.motion = motion;
+  options.seed = seed;
+  return simulated(options);
+}
+
+/// How far off the poses with one status were.
+struct Poses {
+  int count = 0;
+  double worst_m = 0.0, worst_rad = 0.0;
+  void add(const Pose& error) {
+    ++count;
+    worst_m = std::max(worst_m, error.translation_m.norm());
+    worst_rad = std::max(worst_rad, so3_log(error.rotation).norm());
+  }
+};
 
 }  // namespace lilo::test

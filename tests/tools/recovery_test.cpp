@@ -16,7 +16,9 @@
 namespace lilo {
 namespace {
 
+using test::Poses;
 using test::Recording;
+using test::recording_of;
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 
@@ -75,17 +77,6 @@ constexpr std::array kCases = {
     Case{"a quarter blocked at times", a_quarter_blocked_at_times},
 };
 
-/// How far off the poses with one status were.
-struct Poses {
-  int count = 0;
-  double worst_m = 0.0, worst_rad = 0.0;
-  void add(const Pose& error) {
-    ++count;
-    worst_m = std::max(worst_m, error.translation_m.norm());
-    worst_rad = std::max(worst_rad, so3_log(error.rotation).norm());
-  }
-};
-
 struct Outcome {
   int scans = 0, lost = 0;
   Poses tracked, degraded;
@@ -131,15 +122,6 @@ struct Drive {
   sim::MotionOptions motion;
 };
 std::ostream& operator<<(std::ostream& out, const Drive& drive) { return out << drive.name; }
-
-Recording recording_of(const char* world, const sim::MotionOptions& motion,
-                       std::uint64_t seed = 3) {
-  sim::SimOptions options;
-  options.world = world;
-  options.motion = motion;
-  options.seed = seed;
-  return test::simulated(options);
-}
 
 class Recovery : public testing::TestWithParam<Drive> {};
 

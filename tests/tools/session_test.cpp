@@ -13,28 +13,11 @@
 namespace lilo {
 namespace {
 
+using test::Poses;
 using test::Recording;
+using test::recording_of;
 
 constexpr double kDeg = std::numbers::pi / 180.0;
-
-struct Poses {
-  int count = 0;
-  double worst_m = 0.0, worst_rad = 0.0;
-  void add(const Pose& error) {
-    ++count;
-    worst_m = std::max(worst_m, error.translation_m.norm());
-    worst_rad = std::max(worst_rad, so3_log(error.rotation).norm());
-  }
-};
-
-Recording recording_of(const char* world, const sim::MotionOptions& motion,
-                       std::uint64_t seed = 3) {
-  sim::SimOptions options;
-  options.world = world;
-  options.motion = motion;
-  options.seed = seed;
-  return test::simulated(options);
-}
 
 /// Poses called `tracking` against truth, each session by itself.
 struct Sessions {
