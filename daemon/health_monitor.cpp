@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdlib>
 #include <fcntl.h>
+#include <filesystem>
 #include <sys/resource.h>
 #include <unistd.h>
 #include <utility>
@@ -14,6 +16,10 @@ namespace lilo {
 namespace {
 
 constexpr std::uint64_t kWarmAfterScans = 10;
+// A revolution takes 0.2 s at the slowest (300 rpm).
+constexpr double kSilentAfterS = 1.0, kNoScansAfterS = 1.0, kNoPosesAfterS = 2.0;
+constexpr std::int64_t kClockStepNs = 100'000'000;
+constexpr std::size_t kLongestInstance = 32;
 
 std::uint64_t major_faults() {
   rusage usage{};
@@ -35,10 +41,41 @@ double resident_mb() {
   return static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
 }
 
+FaultCounts fault_totals(const Health& h) {
+  FaultCounts out;
+  out[Fault::packets_lost] = h.driver.packets_lost;
+  out[Fault::kernel_dropped] = h.source.kernel_dropped;
+  out[Fault::malformed_packets] = h.driver.malformed_packets;
+  out[Fault::foreign_packets] = h.driver.foreign_packets;
+  out[Fault::receive_errors] = h.source.receive_errors;
+  out[Fault::sensor_restarts] = h.driver.sensor_restarts;
+  out[Fault::scans_dropped] = h.scans_dropped;
+  out[Fault::map_refused] = h.map_refused;
+  out[Fault::poses_not_sent] = h.poses_not_sent;
+  out[Fault::send_errors] = h.send_errors;
+  out[Fault::clock_steps] = h.clock_steps;
+  return out;
+}
+
 }  // namespace
 
-HealthMonitor::HealthMonitor(const Engine& engine)
-    : engine_(engine), start_ns_(monotonic_ns()), last_look_ns_(start_ns_) {}
+std::string instance_name(const std::string& config_path) {
+  std::string name = std::filesystem::path(config_path).stem().string();
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
+  };
+  std::replace_if(
+      name.begin(), name.end(), [&](char c) { return !allowed(c); }, '_');
+  return name.substr(0, kLongestInstance);
+}
+
+HealthMonitor::HealthMonitor(const Engine& engine, std::string instance)
+    : engine_(engine),
+      instance_(std::move(instance)),
+      start_ns_(monotonic_ns()),
+      last_look_ns_(start_ns_),
+      utc_offset_ns_(realtime_ns() - start_ns_) {}
 
 void HealthMonitor::started(const RealtimeReport& report) {
   realtime_ = report;
@@ -46,7 +83,8 @@ void HealthMonitor::started(const RealtimeReport& report) {
 }
 
 void HealthMonitor::add(const PoseReport& report, double latency_ms) {
-  status_ = report.estimate.status;
+  tracking_ = report.estimate.status;
+  last_pose_ns_ = monotonic_ns();
   clock_ = report.clock;
   const std::uint64_t refused = report.estimate.map_refused_count;
   // After a reset another odometry counts, from 0.
@@ -60,31 +98,50 @@ void HealthMonitor::add(const PoseReport& report, double latency_ms) {
   if (++reports_ <= kWarmAfterScans) faults_when_warm_ = faults_now_;
 }
 
-void HealthMonitor::collect(const PublisherCounts& published, Health& h) {
-  const std::int64_t now_ns = monotonic_ns();
-  const PipelineCounters& counters = engine_.counters();
-  const std::int64_t last_packet_ns = engine_.receiver().last_packet_ns();
-  const double elapsed_s = static_cast<double>(now_ns - last_look_ns_) * 1e-9;
+// The clock is slewed by at most 1e-3 (adjtime(3), chrony); more in a second than a tenth of one
+// is a step.
+void HealthMonitor::note_clock_step(std::int64_t now_ns) {
+  const std::int64_t offset_ns = realtime_ns() - now_ns;
+  if (std::abs(offset_ns - utc_offset_ns_) > kClockStepNs) ++clock_steps_;
+  utc_offset_ns_ = offset_ns;
+}
+
+void HealthMonitor::collect_time(std::int64_t now_ns, Health& h) const {
+  const auto age_s = [&](std::int64_t then_ns) {
+    return static_cast<double>(now_ns - (then_ns > 0 ? then_ns : start_ns_)) * 1e-9;
+  };
   h.stamp_ns = realtime_ns();
-  h.uptime_s = static_cast<double>(now_ns - start_ns_) * 1e-9;
-  h.status = status_;
-  h.clock = clock_;
-  h.sensor_silent_s =
-      static_cast<double>(now_ns - (last_packet_ns > 0 ? last_packet_ns : start_ns_)) * 1e-9;
-  h.calibration_progress = engine_.receiver().calibration_progress();
-  h.driver = engine_.receiver().driver_counts().driver();
-  h.source = engine_.receiver().driver_counts().source();
+  h.uptime_s = age_s(start_ns_);
+  h.sensor_silent_s = std::max(age_s(engine_.receiver().last_packet_ns()), 0.0);
+  h.pose_age_s = last_pose_ns_ > 0 ? age_s(last_pose_ns_) : -1.0;
+  h.flow = Flow::all;
+  if (h.sensor_silent_s > kSilentAfterS) {
+    h.flow = Flow::no_packets;
+  } else if (age_s(engine_.receiver().last_scan_ns()) > kNoScansAfterS) {
+    h.flow = Flow::no_scans;
+  } else if (age_s(last_pose_ns_) > kNoPosesAfterS && engine_.scans_waiting() > 0) {
+    h.flow = Flow::no_poses;
+  }
+}
+
+void HealthMonitor::collect_counts(const PublisherCounts& published, Health& h) const {
+  const PipelineCounters& counters = engine_.counters();
+  h.sensor = received_.sensor;
+  h.driver = received_.driver;
+  h.source = received_.source;
   h.scans_processed = counters.scans_processed;
   h.scans_dropped = counters.scans_overrun + counters.scans_skipped;
   h.map_refused = map_refused_;
   h.poses_sent = published.poses_sent;
   h.poses_not_sent = published.poses_not_sent + counters.reports_dropped;
   h.send_errors = published.send_errors;
+  h.clock_steps = clock_steps_;
   h.clients = published.clients;
   h.ring_slots = engine_.ring_slots();
   h.ring_high_water = counters.ring_high_water;
-  const auto new_poses = static_cast<double>(published.poses_sent - poses_at_last_look_);
-  h.rate_hz = elapsed_s > 0.0 ? new_poses / elapsed_s : 0.0;
+}
+
+void HealthMonitor::collect_timing(Health& h) const {
   h.latency_ms = latency_ms_.quantiles();
   h.processing_ms = processing_ms_.quantiles();
   for (std::size_t k = 0; k < stages_ms_.size(); ++k) h.stages_ms[k] = stages_ms_[k].quantiles();
@@ -92,9 +149,24 @@ void HealthMonitor::collect(const PublisherCounts& published, Health& h) {
   h.worker_minor_faults = faults_now_ - faults_when_warm_;
   h.major_faults = major_faults() - major_faults_at_start_;
   h.resident_mb = resident_mb();
+}
+
+void HealthMonitor::collect(const PublisherCounts& published, Health& h) {
+  const std::int64_t now_ns = monotonic_ns();
+  const double elapsed_s = static_cast<double>(now_ns - last_look_ns_) * 1e-9;
+  engine_.receiver().state().load(received_);  // overtaken: that of a second ago
+  note_clock_step(now_ns);
+  h.instance = instance_;
+  h.tracking = tracking_;
+  h.clock = clock_;
+  collect_time(now_ns, h);
+  collect_counts(published, h);
+  collect_timing(h);
+  const auto new_poses = static_cast<double>(published.poses_sent - poses_at_last_look_);
+  h.rate_hz = elapsed_s > 0.0 ? new_poses / elapsed_s : 0.0;
+  h.recent = recent_.see(fault_totals(h), now_ns);
   h.config_error = config_error_;
-  h.metrics_error = metrics_error_;
-  metrics_error_ = false;
+  h.metrics_error = std::exchange(metrics_error_, false);
   poses_at_last_look_ = published.poses_sent;
   last_look_ns_ = now_ns;
 }

@@ -9,7 +9,7 @@
 namespace lilo {
 
 /// Version of the protocol, PROTOCOL.md. Minor: something was added. Major: something changed.
-inline constexpr const char* kProtocolVersion = "1.0";
+inline constexpr const char* kProtocolVersion = "2.0";
 
 const char* to_string(TrackingStatus status);
 

@@ -4,6 +4,7 @@
 #include "daemon/clock.hpp"
 #include "daemon/map_file.hpp"
 #include "daemon/metrics_file.hpp"
+#include "daemon/prometheus.hpp"
 
 #include <utility>
 

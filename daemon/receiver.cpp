@@ -25,41 +25,6 @@ std::int64_t arrival_ns(const PacketView& packet) {
 
 }  // namespace
 
-void SharedDriverCounts::store(const DriverCounts& driver, const SourceCounts& source) {
-  const std::array<std::uint64_t, 9> d{
-      driver.data_packets,   driver.position_packets,   driver.malformed_packets,
-      driver.packets_lost,   driver.packets_duplicated, driver.packets_reordered,
-      driver.scans_complete, driver.scans_partial,      driver.sensor_restarts};
-  const std::array<std::uint64_t, 6> s{source.packets,        source.foreign,
-                                       source.truncated,      source.fragments,
-                                       source.kernel_dropped, source.receive_errors};
-  for (std::size_t i = 0; i < d.size(); ++i) driver_[i].store(d[i], std::memory_order_relaxed);
-  for (std::size_t i = 0; i < s.size(); ++i) source_[i].store(s[i], std::memory_order_relaxed);
-}
-
-DriverCounts SharedDriverCounts::driver() const {
-  const auto at = [&](std::size_t i) { return driver_[i].load(std::memory_order_relaxed); };
-  return {.data_packets = at(0),
-          .position_packets = at(1),
-          .malformed_packets = at(2),
-          .packets_lost = at(3),
-          .packets_duplicated = at(4),
-          .packets_reordered = at(5),
-          .scans_complete = at(6),
-          .scans_partial = at(7),
-          .sensor_restarts = at(8)};
-}
-
-SourceCounts SharedDriverCounts::source() const {
-  const auto at = [&](std::size_t i) { return source_[i].load(std::memory_order_relaxed); };
-  return {.packets = at(0),
-          .foreign = at(1),
-          .truncated = at(2),
-          .fragments = at(3),
-          .kernel_dropped = at(4),
-          .receive_errors = at(5)};
-}
-
 Receiver::Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sensor,
                    const OdometryConfig& odometry, ScanRing& scans, Wakeup& scan_ready,
                    PipelineCounters& counters)
@@ -73,17 +38,12 @@ Receiver::Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sen
   prepare_slot(spare_, sensor.model, odometry);
 }
 
-void Receiver::share_counts() {
-  driver_counts_.store(builder_.counts(), source_->counts());
-  const SensorStatus& status = builder_.status();
-  const bool waiting =
-      status.model == SensorModel::hdl64e && status.calibration == CalibrationOrigin::none;
-  calibration_progress_.store(waiting ? std::min(status.calibration_progress, 0.99) : 1.0,
-                              std::memory_order_relaxed);
+void Receiver::share_state() {
+  state_.store({builder_.counts(), source_->counts(), builder_.status()});
 }
 
 void Receiver::run() {
-  // Without scans (no calibration yet, a stopped motor) the counts are shared all the same.
+  // Without scans (no calibration yet, a stopped motor) the state is shared all the same.
   constexpr std::uint32_t kShareEvery = 512;
   std::uint32_t packets = 0;
   PacketView packet;
@@ -93,9 +53,9 @@ void Receiver::run() {
       last_packet_ns_.store(arrival_ns(packet), std::memory_order_relaxed);
       builder_.feed(packet);
       follow_scan();
-      if (++packets % kShareEvery == 0) share_counts();
+      if (++packets % kShareEvery == 0) share_state();
     } else {
-      share_counts();
+      share_state();
       if (result == ReadResult::end) return;
     }
   }
@@ -116,6 +76,7 @@ Scan& Receiver::exchange(Scan& finished) {
   writing_->extraction_ns += monotonic_ns() - start_ns;
   most_returns_ = std::max(most_returns_, finished.returns.size());
   add(counters_.scans_received);
+  last_scan_ns_.store(start_ns, std::memory_order_relaxed);
   writing_->last_packet_ns = last_packet_ns_.load(std::memory_order_relaxed);
   ScanSlot* slot = writing_;
   if (writing_ == &spare_) {
@@ -129,7 +90,7 @@ Scan& Receiver::exchange(Scan& finished) {
   } else {
     add(counters_.scans_overrun);
   }
-  share_counts();
+  share_state();
   writing_ = scans_.reserve();
   if (writing_ == nullptr) {
     counters_.behind.store(true, std::memory_order_release);

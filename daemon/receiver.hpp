@@ -2,6 +2,7 @@
 
 #include "core/feature_extractor.hpp"
 #include "daemon/pipeline.hpp"
+#include "daemon/snapshot.hpp"
 #include "daemon/wakeup.hpp"
 #include "drivers/packet_source.hpp"
 #include "drivers/scan_builder.hpp"
@@ -13,16 +14,11 @@
 
 namespace lilo {
 
-/// The drivers' totals for other threads: each number is true, though not all of one instant.
-class SharedDriverCounts {
- public:
-  void store(const DriverCounts& driver, const SourceCounts& source);
-  [[nodiscard]] DriverCounts driver() const;
-  [[nodiscard]] SourceCounts source() const;
-
- private:
-  std::array<std::atomic<std::uint64_t>, 9> driver_{};
-  std::array<std::atomic<std::uint64_t>, 6> source_{};
+/// What the drivers know, for other threads.
+struct ReceiverState {
+  DriverCounts driver;
+  SourceCounts source;
+  SensorStatus sensor;
 };
 
 /// Packets to scans and their features, on a thread of its own. The features are found while the
@@ -38,19 +34,18 @@ class Receiver : private ScanSink {
   /// held a scan.
   void run();
 
-  /// Any thread.
-  [[nodiscard]] const SharedDriverCounts& driver_counts() const { return driver_counts_; }
+  /// Any thread: as of the last scan, and while there are none of the last 512 packets or 100 ms.
+  [[nodiscard]] const Snapshot<ReceiverState>& state() const { return state_; }
   /// Any thread: monotonic time of the last packet that was read; 0: none yet.
   [[nodiscard]] std::int64_t last_packet_ns() const { return last_packet_ns_.load(); }
-  /// Any thread: part of the calibration table read so far, in [0, 1), while an HDL-64E cannot be
-  /// used for want of it; 1 otherwise.
-  [[nodiscard]] double calibration_progress() const { return calibration_progress_.load(); }
+  /// Any thread: monotonic time at which the last scan was complete; 0: none yet.
+  [[nodiscard]] std::int64_t last_scan_ns() const { return last_scan_ns_.load(); }
 
  private:
   Scan& exchange(Scan& finished) override;
   void inserted(std::size_t index) override { extractor_.inserted(index); }
   void follow_scan();
-  void share_counts();
+  void share_state();
 
   std::unique_ptr<PacketSource> source_;
   ScanRing& scans_;
@@ -61,8 +56,8 @@ class Receiver : private ScanSink {
   FeatureExtractor extractor_;
   std::size_t most_returns_ = 0;  // of any scan
   std::atomic<std::int64_t> last_packet_ns_{0};
-  std::atomic<double> calibration_progress_{1.0};
-  SharedDriverCounts driver_counts_;
+  std::atomic<std::int64_t> last_scan_ns_{0};
+  Snapshot<ReceiverState> state_;
   ScanBuilder builder_;
 };
 

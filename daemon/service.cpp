@@ -2,6 +2,7 @@
 
 #include "config/key.hpp"
 #include "daemon/clock.hpp"
+#include "daemon/complaints.hpp"
 #include "daemon/log.hpp"
 #include "daemon/notify.hpp"
 #include "daemon/pose_message.hpp"
@@ -38,15 +39,22 @@ void log_report(const RealtimeReport& report) {
 // In place of what `out` held, whose memory it keeps.
 void in_words(const Health& h, std::string& out) {
   out.clear();
-  if (h.calibration_progress < 1.0) {
-    fmt::format_to(std::back_inserter(out),
-                   "waiting for the calibration in the sensor's packets, {:.0f} %",
-                   100.0 * h.calibration_progress);
-  } else if (h.rate_hz < 0.5) {
-    out += h.driver.data_packets == 0 ? "waiting for the sensor" : "no scans";
+  const auto to = std::back_inserter(out);
+  if (h.flow != Flow::no_packets && waits_for_calibration(h.sensor)) {
+    fmt::format_to(to, "waiting for the calibration in the sensor's packets, {:.0f} %",
+                   100.0 * h.sensor.calibration_progress);
+  } else if (h.source.packets == 0) {
+    out += "waiting for the sensor";
+  } else if (h.flow == Flow::no_packets) {
+    fmt::format_to(to, "sensor silent for {:.0f} s", h.sensor_silent_s);
+  } else if (h.flow == Flow::all) {
+    fmt::format_to(to, "{} {:.0f} Hz, packets lost {}, scans dropped {}", to_string(h.tracking),
+                   h.rate_hz, h.driver.packets_lost, h.scans_dropped);
   } else {
-    fmt::format_to(std::back_inserter(out), "{} {:.0f} Hz, packets lost {}, scans dropped {}",
-                   to_string(h.status), h.rate_hz, h.driver.packets_lost, h.scans_dropped);
+    for (const Complaint complaint : complaints(h)) {
+      if (!out.empty()) out += ", ";
+      out += words(complaint);
+    }
   }
 }
 
@@ -59,7 +67,7 @@ Service::Service(const Config& config, std::string config_path)
       second_(io_),
       watchdog_(io_),
       engine_(config, open_udp(config.udp)),
-      monitor_(engine_),
+      monitor_(engine_, instance_name(config_path_)),
       publisher_(io_, config, engine_, monitor_),
       report_ready_(io_, dup(engine_.report_ready().fd())) {
   // OpenCV's pool would inherit the worker's core and policy, and fight it for both.
@@ -163,7 +171,8 @@ void Service::supervise() {
     notify::status(new_status_);
     spdlog::debug("{}", new_status_);
   }
-  if (h.calibration_progress < 1.0) spdlog::info("{}", new_status_);
+  if (h.flow != Flow::no_packets && waits_for_calibration(h.sensor))
+    spdlog::info("{}", new_status_);
   std::swap(status_, new_status_);
 
   const std::uint64_t problems = h.driver.packets_lost + h.driver.malformed_packets +

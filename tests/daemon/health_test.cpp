@@ -1,10 +1,17 @@
 #include "daemon/health.hpp"
 
+#include "daemon/complaints.hpp"
+#include "daemon/health_monitor.hpp"
 #include "daemon/metrics_file.hpp"
+#include "daemon/prometheus.hpp"
+#include "daemon/recent_faults.hpp"
+#include "daemon/snapshot.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <filesystem>
@@ -25,9 +32,15 @@ using nlohmann::json;
 Health a_health() {
   Health h;
   h.stamp_ns = 1'700'000'000'500'000'000;
-  h.status = TrackingStatus::tracking;
+  h.instance = "front";
+  h.tracking = TrackingStatus::tracking;
+  h.pose_age_s = 0.05;
+  h.sensor.model = SensorModel::vlp16;
+  h.sensor.sensor_ipv4 = 0xc0a801c9;
+  h.sensor.rpm = 599.6;
   h.driver.data_packets = 1000;
   h.driver.packets_lost = 3;
+  h.recent[Fault::packets_lost] = 3;
   h.latency_ms = {.p50 = 2.0, .p99 = 5.5, .max = 7.0};
   h.stages_ms[static_cast<std::size_t>(Stage::align)].p99 = 4.0;
   h.realtime.worker = {.policy = "SCHED_FIFO", .priority = 40, .cpus = "1"};
@@ -41,6 +54,9 @@ TEST(Health, SaysEverythingInOneDatagram) {
   EXPECT_FALSE(m.contains("pose"));
   const json& h = m["health"];
   EXPECT_EQ(h["status"], "tracking");
+  EXPECT_EQ(h["instance"], "front");
+  EXPECT_EQ(h["sensor"], json::parse(R"({"model":"vlp16","address":"192.168.1.201","rpm":600,)"
+                                     R"("returns":"strongest"})"));
   EXPECT_EQ(h["packets"]["received"], 1000);
   EXPECT_EQ(h["latency_ms"]["p99"], 5.5);
   EXPECT_EQ(h["realtime"]["policy"], "SCHED_FIFO");
@@ -48,38 +64,88 @@ TEST(Health, SaysEverythingInOneDatagram) {
   EXPECT_EQ(h["stages_ms"].size(), static_cast<std::size_t>(kStageCount));
 }
 
-// All counters at their widest, all complaints: what goes is the stages, never the datagram.
+// All counters at their widest, all complaints: what goes is the stages, then the last complaints,
+// never the datagram.
 TEST(Health, NeverOutgrowsTheDatagram) {
   Health h = a_health();
   const std::uint64_t huge = std::numeric_limits<std::uint32_t>::max() * std::uint64_t{1000};
-  h.driver = {huge, huge, huge, huge, huge, huge, huge, huge, huge};
+  h.driver = {huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge};
   h.source = {huge, huge, huge, huge, huge, huge};
-  h.map_refused = huge;
+  h.instance = std::string(32, 'x');
+  h.map_refused = h.clock_steps = huge;
   h.scans_processed = h.scans_dropped = h.poses_sent = h.poses_not_sent = h.send_errors = huge;
   h.worker_minor_faults = h.major_faults = huge;
   h.latency_ms = h.processing_ms = {12345.67, 12345.67, 12345.67};
   h.stages_ms.fill(h.latency_ms);
-  h.status = TrackingStatus::degraded;
-  h.sensor_silent_s = 1e6;
+  h.tracking = TrackingStatus::degraded;
+  h.sensor_silent_s = h.pose_age_s = 1e6;
+  h.sensor.return_mode = ReturnMode::strongest;
+  h.recent.counts.fill(huge);
   h.config_error = h.metrics_error = true;
   h.realtime.refusals = {"x"};
   JsonWriter out;
   const std::string_view text = write_health("0123456789abcdef", h, out);
   ASSERT_FALSE(text.empty());
-  EXPECT_EQ(json::parse(text)["health"]["complaints"].size(), 9U);
+  const json found = json::parse(text)["health"]["complaints"];
+  EXPECT_EQ(complaints(h).size(), 1 + kFaultCount + 3) << "degraded, all faults, three states";
+  ASSERT_GE(found.size(), 3U);
+  EXPECT_EQ(found[0], "degraded");
+  EXPECT_EQ(found.back(), "more");
 }
 
 TEST(Health, ComplaintsAreEmptyWhenAllIsWell) {
   Health h = a_health();
-  h.driver.packets_lost = 0;
-  EXPECT_TRUE(complaints(h).empty());
+  h.recent = {};
+  EXPECT_TRUE(complaints(h).empty()) << "what was lost long ago is a count, no complaint";
+}
+
+std::vector<std::string> said(const Health& h) {
+  std::vector<std::string> out;
+  for (const Complaint complaint : complaints(h)) out.emplace_back(words(complaint));
+  return out;
+}
+
+// What does not come through outranks what the last pose said.
+TEST(Health, StatusIsThatOfNow) {
+  using Words = std::vector<std::string>;
+  Health h = a_health();
+  h.recent = {};
+  EXPECT_STREQ(status_word(h), "tracking");
+  h.tracking = TrackingStatus::lost;
+  EXPECT_STREQ(status_word(h), "lost");
+  EXPECT_EQ(said(h), Words{"lost"});
+  h.flow = Flow::no_packets;
+  EXPECT_STREQ(status_word(h), "silent");
+  EXPECT_EQ(said(h), Words{"sensor silent"});
+  h.flow = Flow::no_scans;
+  EXPECT_STREQ(status_word(h), "no_scans");
+  EXPECT_EQ(said(h), Words{"no scans although packets come"});
+  h.sensor = {.model = SensorModel::hdl64e};
+  EXPECT_EQ(said(h), Words{"waiting for the calibration"}) << "that is the reason";
+  h.flow = Flow::no_poses;
+  h.sensor.calibration = CalibrationOrigin::packets;
+  EXPECT_STREQ(status_word(h), "no_poses");
+  EXPECT_EQ(said(h), Words{"no poses although scans come"});
+}
+
+TEST(Health, EveryComplaintHasWordsAndASlug) {
+  std::set<std::string_view> all_words, slugs;
+  for (std::size_t k = 0; k < kComplaintCount; ++k) {
+    all_words.insert(words(static_cast<Complaint>(k)));
+    slugs.insert(slug(static_cast<Complaint>(k)));
+  }
+  EXPECT_EQ(all_words.size(), kComplaintCount);
+  EXPECT_EQ(slugs.size(), kComplaintCount);
+  EXPECT_FALSE(all_words.contains("") || slugs.contains(""));
 }
 
 TEST(Health, SaysThatTheMapIsFullAndThatSocketsFail) {
   Health h = a_health();
-  h.driver.packets_lost = 0;
+  h.recent = {};
   h.map_refused = 17;
   h.source.receive_errors = 4;
+  h.recent[Fault::map_refused] = 1;
+  h.recent[Fault::receive_errors] = 1;
   JsonWriter out;
   const json m = json::parse(write_health("0123456789abcdef", h, out))["health"];
   EXPECT_EQ(m["map_refused"], 17);
@@ -87,8 +153,65 @@ TEST(Health, SaysThatTheMapIsFullAndThatSocketsFail) {
   EXPECT_EQ(m["complaints"], json::array({"receive errors", "map full"}));
   std::string text;
   write_prometheus("0123456789abcdef", h, text);
-  EXPECT_NE(text.find("\nlilo_map_refused_total 17\n"), std::string::npos);
-  EXPECT_NE(text.find("\nlilo_receive_errors_total 4\n"), std::string::npos);
+  for (const char* line : {"lilo_map_refused_total{instance=\"front\"} 17",
+                           "lilo_receive_errors_total{instance=\"front\"} 4",
+                           "lilo_complaint{instance=\"front\",kind=\"map_full\"} 1",
+                           "lilo_complaint{instance=\"front\",kind=\"packets_lost\"} 0"}) {
+    EXPECT_NE(text.find('\n' + std::string(line) + '\n'), std::string::npos) << line;
+  }
+}
+
+TEST(RecentFaults, AreForgottenAfterTenSeconds) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  RecentFaults recent;
+  FaultCounts totals;
+  std::int64_t now_ns = 5 * kSecond;
+  const auto after_a_second = [&] {
+    now_ns += kSecond;
+    return recent.see(totals, now_ns)[Fault::packets_lost];
+  };
+  totals[Fault::packets_lost] = 7;
+  EXPECT_EQ(after_a_second(), 7U) << "lost before the first look";
+  for (int k = 0; k < 9; ++k) EXPECT_EQ(after_a_second(), 7U) << k;
+  after_a_second();
+  EXPECT_EQ(after_a_second(), 0U);
+  totals[Fault::packets_lost] = 5;
+  EXPECT_EQ(after_a_second(), 0U) << "two of them came late";
+  totals[Fault::packets_lost] = 10;
+  EXPECT_EQ(after_a_second(), 3U) << "and another five";
+}
+
+TEST(InstanceName, IsThatOfTheFile) {
+  EXPECT_EQ(instance_name("/etc/lilod/front.yaml"), "front");
+  EXPECT_EQ(instance_name("my.robot.yaml"), "my.robot");
+  EXPECT_EQ(instance_name("a\"b\n{}.yaml"), "a_b___");
+  EXPECT_EQ(instance_name("/x/" + std::string(100, 'y') + ".yaml").size(), 32U);
+}
+
+// All numbers of a copy are of one store.
+TEST(Snapshot, IsNeverHalfOfTwo) {
+  using Numbers = std::array<std::uint64_t, 40>;
+  Snapshot<Numbers> snapshot;
+  std::atomic<bool> stop{false};
+  std::thread writer([&] {
+    Numbers numbers{};
+    for (std::uint64_t k = 1; !stop; ++k) {
+      numbers.fill(k);
+      snapshot.store(numbers);
+    }
+  });
+  Numbers seen{};
+  int copies = 0;
+  std::uint64_t last = 0;
+  while (copies < 10'000 || last < 100) {
+    if (!snapshot.load(seen)) continue;
+    ++copies;
+    ASSERT_EQ(std::count(seen.begin(), seen.end(), seen[0]), 40);
+    ASSERT_GE(seen[0], last);
+    last = seen[0];
+  }
+  stop = true;
+  writer.join();
 }
 
 // promtool's rules: HELP and TYPE before the samples, each metric once, counters end in _total,
@@ -115,18 +238,21 @@ TEST(Prometheus, FollowsTheTextFormat) {
     std::smatch match;
     ASSERT_TRUE(std::regex_match(line, match, sample)) << line;
     EXPECT_EQ(match[1], current);
+    EXPECT_NE(line.find("{instance=\"front\""), std::string::npos) << line;
     ++samples;
   }
   EXPECT_GT(samples, 40);
   // What issue 6 asks for by name.
   for (const char* part :
-       {"\nlilo_packets_expected_total 1003\n", "\nlilo_packets_kernel_dropped_total ",
-        "\nlilo_scans_partial_total ", "\nlilo_ring_high_water_scans ",
-        "\nlilo_stage_seconds{stage=\"align\",quantile=\"0.99\"} 0.004\n",
-        "\nlilo_latency_seconds{quantile=\"0.99\"} 0.0055\n", "\nlilo_major_faults_total ",
-        "\nlilo_worker_policy_info{policy=\"SCHED_FIFO\",priority=\"40\",cpus=\"1\"} 1\n",
-        "\nlilo_clock_info{source=\"host\"} 1\n"}) {
-    EXPECT_NE(text.find(part), std::string::npos) << part;
+       {"lilo_packets_expected_total{X} 1003", "lilo_packets_kernel_dropped_total{X} ",
+        "lilo_scans_partial_total{X} ", "lilo_ring_high_water_scans{X} ",
+        "lilo_stage_seconds{X,stage=\"align\",quantile=\"0.99\"} 0.004",
+        "lilo_latency_seconds{X,quantile=\"0.99\"} 0.0055", "lilo_major_faults_total{X} ",
+        "lilo_worker_policy_info{X,policy=\"SCHED_FIFO\",priority=\"40\",cpus=\"1\"} 1",
+        "lilo_clock_info{X,source=\"host\"} 1", "lilo_status_info{X,status=\"tracking\"} 1"}) {
+    std::string line = '\n' + std::string(part);
+    line.replace(line.find('X'), 1, "instance=\"front\"");
+    EXPECT_NE(text.find(line), std::string::npos) << line;
   }
 }
 

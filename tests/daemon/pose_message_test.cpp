@@ -40,7 +40,7 @@ json message_of(const PoseReport& report) {
 
 TEST(PoseMessage, HoldsEveryField) {
   const json m = message_of(a_report());
-  EXPECT_EQ(m["v"], "1.0");
+  EXPECT_EQ(m["v"], "2.0");
   EXPECT_TRUE(m["timestamp"].is_number());
   EXPECT_NEAR(m["timestamp"].get<double>(), 1453364282.709, 1e-6);
   EXPECT_EQ(m["session"], "0123456789abcdef");

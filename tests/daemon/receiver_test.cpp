@@ -65,7 +65,13 @@ TEST(Receiver, HandsOnEveryScanInOrder) {
     end_ns = slot->scan.end_ns;
     scans.release();
   }
-  EXPECT_EQ(receiver.driver_counts().driver().packets_lost, 0U);
+  ReceiverState state;
+  ASSERT_TRUE(receiver.state().load(state));
+  EXPECT_EQ(state.driver.packets_lost, 0U);
+  EXPECT_GT(state.driver.data_packets, 0U);
+  EXPECT_EQ(state.sensor.model, SensorModel::vlp16);
+  EXPECT_NEAR(state.sensor.rpm, 600.0, 1.0);
+  EXPECT_GE(receiver.last_scan_ns(), before);
 }
 
 // Nobody takes scans: the ring holds the oldest, the rest is counted, the worker is asked to skip.
@@ -104,10 +110,13 @@ TEST(Receiver, SaysHowMuchOfTheCalibrationItHas) {
   PipelineCounters counters;
   Receiver receiver(std::make_unique<FirstPackets>(open_pcap(capture), 2000),
                     {.model = SensorModel::hdl64e}, {}, scans, ready, counters);
-  EXPECT_EQ(receiver.calibration_progress(), 1.0);
   receiver.run();
   EXPECT_EQ(scans.size(), 0U);
-  EXPECT_NEAR(receiver.calibration_progress(), 2000.0 / 4160.0, 0.1);
+  EXPECT_EQ(receiver.last_scan_ns(), 0);
+  ReceiverState state;
+  ASSERT_TRUE(receiver.state().load(state));
+  EXPECT_EQ(state.sensor.calibration, CalibrationOrigin::none);
+  EXPECT_NEAR(state.sensor.calibration_progress, 2000.0 / 4160.0, 0.1);
 }
 
 /// A source that lets the test act as the worker in the middle of the stream.

@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 
 json a_pose() {
-  return json::parse(R"({"v":"1.0","timestamp":1.5,"session":"0","seq":0,"pose":{
+  return json::parse(R"({"v":"2.0","timestamp":1.5,"session":"0","seq":0,"pose":{
     "stamp":{"sec":1,"nsec":500000000},"frame_id":"odom","child_frame_id":"velodyne",
     "status":"tracking","position":{"x":0,"y":0,"z":0},"orientation":{"x":0,"y":0,"z":0,"w":1},
     "latency_ms":1.5,"lost_packets":0}})");
@@ -28,13 +28,18 @@ TEST(Schema, RefusesWhatTheProtocolForbids) {
   };
   EXPECT_EQ(broken([](json& m) { m.erase("timestamp"); }), 1U);
   EXPECT_EQ(broken([](json& m) { m["timestamp"] = "1.5"; }), 1U);
-  EXPECT_EQ(broken([](json& m) { m["new"] = 1; }), 1U);
+  EXPECT_EQ(broken([](json& m) { m["new"] = 1; }), 1U) << "we send no unknown key";
   EXPECT_EQ(broken([](json& m) { m["pose"]["status"] = "fine"; }), 1U);
   EXPECT_EQ(broken([](json& m) { m["pose"]["position"].erase("z"); }), 1U);
   EXPECT_EQ(broken([](json& m) { m["pose"]["covariance"] = json::array({1}); }), 1U);
   EXPECT_EQ(broken([](json& m) { m["pose"]["orientation"]["w"] = 1.1; }), 1U);
   EXPECT_EQ(broken([](json& m) { m["error"] = {{"reason", "x"}}; }), 1U) << "two kinds";
   EXPECT_EQ(broken([](json& m) { m.erase("seq"); }), 1U) << "no kind at all";
+}
+
+// A client of version 2.0 that validates must bear version 2.1.
+TEST(Schema, AllowsKeysItDoesNotKnow) {
+  EXPECT_EQ(protocol_schema().dump().find("additionalProperties"), std::string::npos);
 }
 
 // Every name of the schema is in PROTOCOL.md, whole or behind its parent ("`.lost`").

@@ -145,6 +145,8 @@ TEST(Sensor, UnpluggedAndReplugged) {
   while (lilod.sink().receive(milliseconds(0))) {
   }
   const json silent = next_of_kind(lilod.sink(), "health").value_or(json());
+  EXPECT_EQ(silent["health"]["status"], "silent");
+  EXPECT_GT(silent["health"]["pose_age_s"], 1.0);
   EXPECT_EQ(silent["health"]["complaints"][0], "sensor silent");
   EXPECT_GT(silent["health"]["sensor_silent_s"], 1.0);
   Sensor().turn(lilod, 3.0);  // its clock starts again
@@ -190,6 +192,9 @@ TEST(Clock, AStepOfAnHourBendsNothing) {
     EXPECT_LT(std::abs(pose["position"]["x"].get<double>()), 0.1) << "it stands";
     EXPECT_LT(pose["latency_ms"], 1000.0);
   }
+  EXPECT_EQ(health["health"]["clock_steps"], 1);
+  EXPECT_NE(health["health"]["complaints"].dump().find("the computer's clock was set"),
+            std::string::npos);
   EXPECT_LT(health["health"]["uptime_s"], 60.0);
   EXPECT_LT(health["health"]["sensor_silent_s"], 60.0);
 }
