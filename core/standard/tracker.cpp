@@ -114,6 +114,7 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
   }
   observe_motion();
   accept(timing_, prior, solution_);
+  if (status_ != TrackingStatus::lost) standing_.observe(T_odom_sensor_, twist_);
   if (seen_count_ > 1 && status_ != TrackingStatus::lost) {
     note_track(seen_[seen_count_ - 1], solution_.trajectory.at(0.0), T_odom_sensor_);
   }
@@ -131,7 +132,14 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
 Solution Tracker::solve(const Scan& scan, const std::vector<Feature>& chosen, const Prior& prior) {
   if (scan_count_ == 1) return start();
   if (chosen.size() >= kMinFeatures && may_be_elsewhere()) return relocalize(scan, chosen, prior);
-  return follow_turn(solver_.solve(chosen, maps_, prior, finest_), chosen, prior);
+  return follow_turn(align_moving_or_standing(chosen, prior), chosen, prior);
+}
+
+Solution Tracker::align_moving_or_standing(const std::vector<Feature>& chosen, const Prior& prior) {
+  const Solution moving = solver_.solve(chosen, maps_, prior, finest_);
+  if (!standing_.is_likely()) return moving;
+  const Solution standing = solver_.solve(chosen, maps_, standing_.hypothesis(prior), finest_);
+  return fits_as_well(standing.structure_inliers, moving.structure_inliers) ? standing : moving;
 }
 
 void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {

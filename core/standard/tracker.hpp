@@ -8,6 +8,7 @@
 #include "core/standard/relocalizer.hpp"
 #include "core/standard/selection.hpp"
 #include "core/standard/solver.hpp"
+#include "core/standard/standing.hpp"
 
 #include <array>
 #include <utility>
@@ -73,6 +74,7 @@ class Tracker {
   static bool follows(const Timing& scan, std::int64_t end_ns);
   [[nodiscard]] Prior predict(const Timing& scan) const;
   Solution solve(const Scan& scan, const std::vector<Feature>& chosen, const Prior& prior);
+  Solution align_moving_or_standing(const std::vector<Feature>& chosen, const Prior& prior);
   void observe_motion();
   void accept(const Timing& scan, const Prior& prior, const Solution& solution);
   bool is_refuted(const std::vector<Feature>& chosen);
@@ -163,6 +165,7 @@ class Tracker {
   std::size_t finest_ = LocalMaps::kUsual;  // level of the maps for these surroundings
   Drift drift_;
   ProcessNoise process_noise_;
+  Standing standing_;
   Footprint footprint_;
   MotionCheck motion_check_;
   Relocalizer relocalizer_;

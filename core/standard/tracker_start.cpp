@@ -58,6 +58,7 @@ void Tracker::start_anew() {
 }
 
 void Tracker::stand_at_origin() {
+  standing_.end();
   process_noise_.interrupt();
   T_odom_sensor_ = {};
   T_odom_keyframe_ = {};
@@ -139,6 +140,7 @@ Solution Tracker::start() {
   start_is_clear_ = start.is_clear;
   // Who was switched on mostly stands; where a map was given up, more scans must tell.
   stands_ = start.is_clear && !start.moves && restarts_ == 0;
+  if (stands_) standing_.begin({});
   assumed_twist_ = start.twist;
   return solution;
 }
