@@ -75,7 +75,7 @@ struct StandardConfig {
   double ground_kernel = 1.5;     ///< Cauchy scale in sigmas of the map: ground is rough
   double structure_kernel = 0.7;  ///< tighter: structure moves, hides and sways
   double data_weight = 0.1;       ///< neighbouring residuals are not independent: each counts less
-  int segments = 2;               ///< pieces of the motion within one scan
+  int segments = 2;               ///< pieces of the motion within one scan, at least
   int max_iterations = 12;
   /// Process noise: power densities of the acceleration's white noise, how fast the motion may
   /// change. The least that is assumed; more is estimated on the way (standard/process_noise.hpp).

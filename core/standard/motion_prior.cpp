@@ -2,6 +2,9 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
+#include <cmath>
+
 namespace lilo::standard {
 namespace {
 
@@ -16,9 +19,9 @@ KnotInformation transition(double dt_s) {
 struct Step {
   KnotInformation phi, W;
 
-  Step(const Prior& prior, int segments)
-      : phi(transition(prior.span_s / segments)),
-        W(process_information(prior.acceleration_density, prior.span_s / segments)) {}
+  explicit Step(const Prior& prior)
+      : phi(transition(prior.span_s / prior.segments)),
+        W(process_information(prior.acceleration_density, prior.span_s / prior.segments)) {}
 
   /// By how much the knot that begins at unknown `i` fails to lead to the next one.
   [[nodiscard]] Knot error(const Unknowns& x, int i) const {
@@ -28,12 +31,12 @@ struct Step {
 
 }  // namespace
 
-void add_prior(const Prior& prior, int segments, const Unknowns& x, NormalMatrix& H, Unknowns& b) {
+void add_prior(const Prior& prior, const Unknowns& x, NormalMatrix& H, Unknowns& b) {
   H.topLeftCorner<kKnotSize, kKnotSize>() += prior.begin_information;
   b.head<kKnotSize>() -= prior.begin_information * (x.head<kKnotSize>() - prior.begin_mean);
-  const Step step(prior, segments);
+  const Step step(prior);
   const KnotInformation Wphi = step.W * step.phi;
-  for (int k = 0; k < segments; ++k) {
+  for (int k = 0; k < prior.segments; ++k) {
     const int i = kKnotSize * k, j = i + kKnotSize;
     const Knot e = step.error(x, i);
     H.block<kKnotSize, kKnotSize>(i, i) += step.phi.transpose() * Wphi;
@@ -52,15 +55,15 @@ Vector6d mean_by_kind(const Vector6d& of_axes) {
   return mean;
 }
 
-Vector6d normalised_innovation(const Prior& prior, int segments, const Unknowns& x) {
-  const Step step(prior, segments);
+Vector6d normalised_innovation(const Prior& prior, const Unknowns& x) {
+  const Step step(prior);
   Vector6d squares = Vector6d::Zero();
-  for (int k = 0; k < segments; ++k) {
+  for (int k = 0; k < prior.segments; ++k) {
     const Knot e = step.error(x, kKnotSize * k);
     const Knot eWe = e.cwiseProduct(step.W * e);
     squares += eWe.head<6>() + eWe.tail<6>();
   }
-  return mean_by_kind(squares / (2.0 * segments));
+  return mean_by_kind(squares / (2.0 * prior.segments));
 }
 
 Prior inflated(Prior prior, const Vector6d& innovation) {
@@ -76,6 +79,15 @@ KnotInformation process_information(const Vector6d& acceleration_density, double
   W.bottomLeftCorner<6, 6>().diagonal() = -6.0 / (dt_s * dt_s) * w;
   W.bottomRightCorner<6, 6>().diagonal() = 4.0 / dt_s * w;
   return W;
+}
+
+int segments_for(const Vector6d& acceleration_density, double span_s, int least) {
+  constexpr double kBetweenKnots_rad = 1e-3;  // 2 cm at 20 m
+  const double density = acceleration_density.head<3>().mean();
+  const double segment_s = std::cbrt(192.0 * kBetweenKnots_rad * kBetweenKnots_rad / density);
+  const double wanted = std::ceil(span_s / segment_s);
+  return static_cast<int>(
+      std::clamp(wanted, std::min<double>(least, kMaxSegments), double{kMaxSegments}));
 }
 
 KnotInformation propagated(const KnotInformation& information, const Vector6d& acceleration_density,

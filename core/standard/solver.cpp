@@ -128,14 +128,15 @@ void Solver::add_residual(const Asked& one, float kernel_scale, float data_weigh
 }
 
 /// Of the knots, from all bins; and the information that the data have of the pose.
-Solver::Equations Solver::data_equations(double span_s, Matrix6d& data_information) const {
-  const int n = kKnotSize * (config_.segments + 1);
+Solver::Equations Solver::data_equations(const Prior& prior, Matrix6d& data_information) const {
+  const int n = kKnotSize * (prior.segments + 1);
   Equations all{NormalMatrix::Zero(n, n), Unknowns::Zero(n)};
   data_information.setZero();
   for (int bin = 0; bin <= kBins; ++bin) {
     const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
     data_information += A / static_cast<double>(config_.data_weight);
-    const KnotWeights w = weights_at(static_cast<double>(bin) / kBins, config_.segments, span_s);
+    const KnotWeights w =
+        weights_at(static_cast<double>(bin) / kBins, prior.segments, prior.span_s);
     for (int i = 0; i < 4; ++i) {
       const int row = kKnotSize * w.first + 6 * i;
       const double wi = w.weight[static_cast<std::size_t>(i)];
@@ -153,11 +154,12 @@ Solver::Equations Solver::data_equations(double span_s, Matrix6d& data_informati
 /// Residuals that look the same way share what misleads them. The sums of a bin, as clusters, tell
 /// by how much that makes the pose less certain than independent residuals of one sigma would
 /// (Liang and Zeger, 1986). `step`: the last one, which the residuals have not seen yet.
-Vector6d Solver::design_effect(const Unknowns& step, double span_s) const {
+Vector6d Solver::design_effect(const Unknowns& step, const Prior& prior) const {
   Vector6d squares = Vector6d::Zero(), expected = Vector6d::Zero();
   for (int bin = 0; bin <= kBins; ++bin) {
     const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
-    const KnotWeights w = weights_at(static_cast<double>(bin) / kBins, config_.segments, span_s);
+    const KnotWeights w =
+        weights_at(static_cast<double>(bin) / kBins, prior.segments, prior.span_s);
     Vector6d moved = Vector6d::Zero();
     for (int i = 0; i < 4; ++i) {
       moved += w.weight[static_cast<std::size_t>(i)] * step.segment<6>(kKnotSize * w.first + 6 * i);
@@ -170,8 +172,8 @@ Vector6d Solver::design_effect(const Unknowns& step, double span_s) const {
 
 Solution Solver::unmoved(const Prior& prior) const {
   Solution solution;
-  solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, config_.segments,
-                         Unknowns::Zero(Eigen::Index{kKnotSize} * (config_.segments + 1))};
+  solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, prior.segments,
+                         Unknowns::Zero(Eigen::Index{kKnotSize} * (prior.segments + 1))};
   return solution;
 }
 
@@ -189,11 +191,11 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   last_.assign(features.size(), LocalMaps::kNoCells);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, stride == 1 ? finest : LocalMaps::kUsual, solution);
-    Equations data = data_equations(prior.span_s, solution.data_information);
+    Equations data = data_equations(prior, solution.data_information);
     const Unknowns x = solution.trajectory.knots;
     auto& [H, b] = data;
-    const Vector6d innovation = normalised_innovation(prior, config_.segments, x);
-    add_prior(inflated(prior, innovation), config_.segments, x, H, b);
+    const Vector6d innovation = normalised_innovation(prior, x);
+    add_prior(inflated(prior, innovation), x, H, b);
     const Unknowns step = H.ldlt().solve(b);
     if (!step.allFinite()) break;
     solution.trajectory.knots += (stride == 1 ? kFurther : 1.0) * step;
@@ -206,7 +208,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     if (solution.iterations + 1 >= config_.max_iterations) stride = 1;
     if (solution.converged || solution.iterations == config_.max_iterations) {
       solution.end_information = marginal_of_last(H);
-      solution.design_effect = design_effect(step, prior.span_s);
+      solution.design_effect = design_effect(step, prior);
     }
   }
   const KnotInformation noise = process_information(prior.acceleration_density, prior.span_s);

@@ -15,7 +15,6 @@
 namespace lilo::standard {
 
 struct SolverConfig {
-  int segments = 1;
   int max_iterations = 12;
   float ground_kernel = 1.5F;     ///< Cauchy scale in sigmas of the map: ground is rough
   float structure_kernel = 0.7F;  ///< tighter: structure moves and hides
@@ -84,8 +83,8 @@ class Solver {
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);
   static void match(std::span<Asked> asked, LocalMaps& maps, std::size_t finest);
   void add_residual(const Asked& one, float kernel_scale, float data_weight, Sums& sums);
-  Vector6d design_effect(const Unknowns& step, double span_s) const;
-  Equations data_equations(double span_s, Matrix6d& data_information) const;
+  Vector6d design_effect(const Unknowns& step, const Prior& prior) const;
+  Equations data_equations(const Prior& prior, Matrix6d& data_information) const;
 
   SolverConfig config_;
   Sampled sampled_;

@@ -41,7 +41,6 @@ LocalMaps make_maps(const StandardConfig& c) {
 
 SolverConfig solver_config(const StandardConfig& c) {
   SolverConfig s;
-  s.segments = std::clamp(c.segments, 1, kMaxSegments);
   s.max_iterations = c.max_iterations;
   s.ground_kernel = static_cast<float>(c.ground_kernel);
   s.structure_kernel = static_cast<float>(c.structure_kernel);
@@ -190,6 +189,8 @@ Prior Tracker::predict(const Timing& scan) const {
   prior.twist = twist_;
   prior.acceleration_density = process_noise_.density();
   prior.begin_information = propagated(information_, prior.acceleration_density, gap_s);
+  prior.segments =
+      segments_for(prior.acceleration_density, prior.span_s, config_.standard.segments);
   return prior;
 }
 

@@ -16,7 +16,7 @@
 /// velocity are continuous inside a scan and from scan to scan.
 namespace lilo::standard {
 
-inline constexpr int kMaxSegments = 3;
+inline constexpr int kMaxSegments = 4;
 inline constexpr int kKnotSize = 12;  ///< d (rotation, translation), then its rate per second
 inline constexpr int kMaxUnknowns = kKnotSize * (kMaxSegments + 1);
 using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxUnknowns, 1>;

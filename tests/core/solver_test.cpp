@@ -60,12 +60,13 @@ Prior loose_prior(const Pose& T_begin) {
   Prior prior;
   prior.T_begin = T_begin;
   prior.span_s = kSpan_s;
+  prior.segments = 2;
   prior.acceleration_density = Vector6d::Constant(10.0);
   prior.begin_information = 1e-2 * KnotInformation::Identity();
   return prior;
 }
 
-constexpr SolverConfig kConfig{.segments = 2, .max_iterations = 20};
+constexpr SolverConfig kConfig{.max_iterations = 20};
 
 TEST(Solver, FindsTheMotionWithinAScan) {
   const Twist twist{{2.0, 0.5, 0.0}, {0.0, 0.1, 0.6}};
