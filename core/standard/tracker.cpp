@@ -123,6 +123,7 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
     status_ = TrackingStatus::lost;
     lost_scans_ = kScansToGiveUp;
   }
+  find_weak_directions();
   Estimate result = estimate(scan, solution_, chosen);
   hook(Stage::align);
   return result;
@@ -252,11 +253,27 @@ bool Tracker::is_refuted(const std::vector<Feature>& chosen) {
   return motion_check_.is_refuted(by_information.eigenvectors().col(0));
 }
 
+void Tracker::find_weak_directions() {
+  weak_ = {};
+  if (scan_count_ == 0 || status_ == TrackingStatus::lost) return;
+  weak_ = weak_directions(solution_.data_information, solution_.motion_information,
+                          T_odom_sensor_.rotation);
+  const double span_s = span_of(timing_);
+  const Eigen::Vector3d along = weak_.all[0].direction.head<3>();  // m of a unit of rad and m
+  constexpr double kMostlyTurns = 0.3;
+  if (weak_.count == 0 || along.norm() < kMostlyTurns) {
+    drift_.see(span_s);
+  } else {
+    drift_.coast(T_odom_sensor_.rotation * along.normalized(),
+                 process_noise_.density().segment<2>(3).mean(), span_s);
+  }
+}
+
 /// Of the last pose against the map: rotation, translation; odometry axes.
 Matrix6d Tracker::alignment_covariance() const {
-  // The error of a cell is the same for all scans that are matched with it, for as long as it is in
-  // view: so many of them count as one.
-  constexpr double kScansInView = 20.0;
+  // The error of a cell is the same for all scans that are matched with it: so many of them count
+  // as one. What is the same for longer is for Drift.
+  constexpr double kScansInView = 3.0;
   const double unit = kScansInView * config_.standard.data_weight;
   const Vector6d scale = (unit * design_effect_).cwiseSqrt();
   return scale.asDiagonal() * information_.inverse().topLeftCorner<6, 6>() * scale.asDiagonal();
@@ -284,13 +301,9 @@ Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
   e.map_refused_count = maps_.refused();
   e.correspondence_count = solution.matched;
   e.iterations = solution.iterations;
-  if (scan_count_ > 0 && status_ != TrackingStatus::lost) {
-    const WeakDirections weak = weak_directions(
-        solution.data_information, solution.motion_information, T_odom_sensor_.rotation);
-    e.weak_directions = weak.all;
-    e.weak_count = weak.count;
-    if (weak.count > 0 && status_ == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
-  }
+  e.weak_directions = weak_.all;
+  e.weak_count = weak_.count;
+  if (weak_.count > 0 && status_ == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
   e.covariance = translation_first(sensor_covariance());
   e.has_covariance = e.covariance.allFinite();
   e.restarts = restarts_;

@@ -9,6 +9,7 @@
 #include "core/standard/selection.hpp"
 #include "core/standard/solver.hpp"
 #include "core/standard/standing.hpp"
+#include "core/standard/weak_directions.hpp"
 
 #include <array>
 #include <utility>
@@ -78,6 +79,7 @@ class Tracker {
   void observe_motion();
   void accept(const Timing& scan, const Prior& prior, const Solution& solution);
   bool is_refuted(const std::vector<Feature>& chosen);
+  void find_weak_directions();
   [[nodiscard]] TrackingStatus status_of(const Scan& scan, const Solution& solution,
                                          const std::vector<Feature>& chosen) const;
   [[nodiscard]] Estimate estimate(const Scan& scan, const Solution& solution,
@@ -164,6 +166,7 @@ class Tracker {
   std::vector<LocalMaps::Point> points_;    // of the features that enter the map
   std::size_t finest_ = LocalMaps::kUsual;  // level of the maps for these surroundings
   Drift drift_;
+  WeakDirections weak_;  // of the last scan
   ProcessNoise process_noise_;
   Standing standing_;
   Footprint footprint_;

@@ -34,7 +34,7 @@ void Tracker::grow_map(const Timing& scan, const std::vector<Feature>& features,
   if (keyframes_ < kYoung) insert_held();
   ++keyframes_;
   T_odom_keyframe_ = T_odom_sensor_;
-  drift_.inherit(alignment_covariance(), keyframes_);
+  drift_.inherit(alignment_covariance(), T_odom_sensor_.rotation, keyframes_);
 }
 
 void Tracker::hold(const std::vector<Feature>& features, const Trajectory& trajectory,

@@ -98,6 +98,36 @@ TEST(Drift, AnErrorOfHeadingMovesAsideWhatLiesAhead) {
   EXPECT_NEAR(drift.covariance()(2, 4), 0.01, 1e-9);  // to the left where it turns left
 }
 
+// Of a keyframe's standard error a thirteenth is handed on, and half of that is steady.
+TEST(Drift, ASteadyErrorAddsUpAlongTheWayAndComesBackOnALoop) {
+  constexpr double kSigma_m = 0.01;
+  Matrix6d alignment = Matrix6d::Zero();
+  alignment(3, 3) = alignment(4, 4) = kSigma_m * kSigma_m;
+  const Eigen::Quaterniond ahead = Eigen::Quaterniond::Identity();
+  const Eigen::Quaterniond back(0.0, 0.0, 0.0, 1.0);  // about the upright
+  constexpr int kOld = 100, kTimes = 1000;
+  const double random_m2 = kTimes * std::pow(kSigma_m / 13.0, 2);
+  standard::Drift away, loop;
+  for (int k = 0; k < kTimes; ++k) {
+    away.inherit(alignment, ahead, kOld);
+    loop.inherit(alignment, k < kTimes / 2 ? ahead : back, kOld);
+  }
+  EXPECT_NEAR(away.covariance()(3, 3), random_m2 + std::pow(kTimes * 0.5 * kSigma_m / 13.0, 2),
+              1e-9);
+  EXPECT_NEAR(loop.covariance()(3, 3), random_m2, 1e-9);
+}
+
+// A position under white noise q on acceleration is uncertain by q t^3 / 3.
+TEST(Drift, WhatNoScanTellsIsDeadReckoned) {
+  constexpr double kDensity = 3.0, kScan_s = 0.01;
+  standard::Drift drift;
+  for (int scan = 0; scan < 1000; ++scan) drift.coast({0.6, 0.8, 0.0}, kDensity, kScan_s);
+  const Matrix6d covariance = drift.covariance();
+  EXPECT_NEAR(covariance(3, 3) / (0.36 * kDensity * 1000.0 / 3.0), 1.0, 0.01);
+  EXPECT_NEAR(covariance(4, 4) / (0.64 * kDensity * 1000.0 / 3.0), 1.0, 0.01);
+  EXPECT_EQ(covariance(5, 5), 0.0);
+}
+
 TEST(Drift, SensorAxesTurnWithTheSensor) {
   Matrix6d along_x = Matrix6d::Zero();
   along_x(3, 3) = 4.0;
