@@ -1,0 +1,1 @@
+// Nothing: CMake needs a source to build the precompiled header beside.
