@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 // Poses from lilod, in one header: C++17, POSIX sockets, nothing else. daemon/PROTOCOL.md.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Prints ten poses of lilod: print_poses [HOST [PORT]].   c++ -std=c++17 print_poses.cpp
 #include "lilo_client.hpp"
 
