@@ -1,7 +1,8 @@
 #include "config/config.hpp"
 #include "config/key.hpp"
 #include "config/yaml_reader.hpp"
-#include "core/standard/cell_table.hpp"
+#include "core/map/cell_table.hpp"
+#include "core/odometry.hpp"
 
 #include <fmt/format.h>
 
@@ -49,11 +50,11 @@ struct Contradiction {
 
 // The map forgets what is farther than its radius, and gets points as far away as returns are used.
 void check_map(const Config& c, std::vector<Contradiction>& found) {
-  const double cell_m = c.odometry.standard.cell_m;
-  const double radius_m = c.odometry.standard.map_radius_m;
+  const double cell_m = c.odometry.default_profile.cell_m;
+  const double radius_m = c.odometry.default_profile.map_radius_m;
   const double range_m = std::min(c.odometry.max_range_m, c.sensor.max_range_m);
   const double reach_m = radius_m + std::max(radius_m, range_m);
-  constexpr int kCells = standard::CellTable::kSafeLevels;
+  constexpr int kCells = core::CellTable::kSafeLevels;
   if (reach_m <= kCells * cell_m) return;
   found.push_back(
       {{"odometry.default.cell_m", "odometry.default.map_radius_m", "odometry.max_range_m",
@@ -107,6 +108,8 @@ std::vector<Contradiction> contradictions(const Config& c) {
                       c.odometry.max_range_m, c.odometry.min_range_m));
   require(c.udp.data_port != c.udp.position_port, {"udp.position_port", "udp.data_port"},
           fmt::format("expected another port than udp.data_port, found {}", c.udp.position_port));
+  require(has_profile(c.odometry.profile), {"odometry.profile"},
+          "expected default, as this build has no profile paper, found paper");
   check_map(c, found);
   check_sinks(c, found);
   return found;

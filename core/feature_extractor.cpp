@@ -1,5 +1,7 @@
 #include "core/feature_extractor.hpp"
 
+#include "core/image/feature_image.hpp"
+
 #include <span>
 #include <utility>
 
@@ -11,33 +13,51 @@ constexpr std::size_t kUnsettledReturns = std::size_t{5} * 384;
 
 }  // namespace
 
+struct FeatureExtractor::Impl {
+  bool idle;  // the profile has no use for features
+  core::FeatureImage image;
+  std::size_t taken = 0;     // returns of the scan being followed
+  bool invalidated = false;  // returns came in before some that were taken
+
+  void take(const Scan& scan, std::size_t end) {
+    if (taken == 0) image.begin(scan.beams);
+    image.add(std::span(scan.returns).subspan(taken, end - taken));
+    taken = end;
+  }
+};
+
 FeatureExtractor::FeatureExtractor(const OdometryConfig& config)
-    : idle_(config.profile != Profile::standard),
-      image_(config.standard.columns, {config.min_range_m, config.max_range_m}) {}
+    : impl_(std::make_unique<Impl>(
+          Impl{config.profile != Profile::default_profile,
+               {config.default_profile.columns, {config.min_range_m, config.max_range_m}}})) {}
+
+FeatureExtractor::~FeatureExtractor() = default;
+FeatureExtractor::FeatureExtractor(FeatureExtractor&&) noexcept = default;
+FeatureExtractor& FeatureExtractor::operator=(FeatureExtractor&&) noexcept = default;
 
 void FeatureExtractor::follow(const Scan& scan) {
   const std::size_t count = scan.returns.size();
-  if (idle_ || spoilt_ || count < taken_ + kUnsettledReturns) return;
-  take(scan, count - kUnsettledReturns);
+  if (impl_->idle || impl_->invalidated || count < impl_->taken + kUnsettledReturns) return;
+  impl_->take(scan, count - kUnsettledReturns);
 }
 
 void FeatureExtractor::inserted(std::size_t index) {
-  if (index < taken_) spoilt_ = true;
+  if (index < impl_->taken) impl_->invalidated = true;
 }
 
 void FeatureExtractor::finish(const Scan& scan, ScanFeatures& out) {
-  if (idle_) return;
-  if (spoilt_) taken_ = 0;
-  take(scan, scan.returns.size());
-  std::swap(image_.finish(scan), out.all);
-  taken_ = 0;
-  spoilt_ = false;
+  if (impl_->idle) return;
+  if (impl_->invalidated) impl_->taken = 0;
+  impl_->take(scan, scan.returns.size());
+  std::swap(impl_->image.finish(scan), out.all);
+  impl_->taken = 0;
+  impl_->invalidated = false;
 }
 
-void FeatureExtractor::take(const Scan& scan, std::size_t end) {
-  if (taken_ == 0) image_.begin(scan.beams);
-  image_.add(std::span(scan.returns).subspan(taken_, end - taken_));
-  taken_ = end;
+std::size_t most_features(const OdometryConfig& config, int rings) {
+  if (config.profile != Profile::default_profile) return 0;
+  const int columns = core::FeatureImage::columns_for(rings, config.default_profile.columns);
+  return static_cast<std::size_t>(rings) * static_cast<std::size_t>(columns);
 }
 
 }  // namespace lilo

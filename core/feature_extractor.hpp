@@ -1,18 +1,13 @@
 #pragma once
 
+#include "core/feature.hpp"
 #include "core/odometry_config.hpp"
 #include "core/scan.hpp"
-#include "core/standard/feature_image.hpp"
 
 #include <cstddef>
-#include <vector>
+#include <memory>
 
 namespace lilo {
-
-/// What the odometry looks at instead of all returns of a scan. Its memory is reused.
-struct ScanFeatures {
-  std::vector<standard::Feature> all;  ///< profile paper: none, it takes the scan
-};
 
 /// Finds the features of a scan while the scan is still being measured, so that only registration
 /// is left to do after its last firing. The features are the same bits whether and how often
@@ -21,6 +16,9 @@ struct ScanFeatures {
 class FeatureExtractor {
  public:
   explicit FeatureExtractor(const OdometryConfig& config);
+  ~FeatureExtractor();
+  FeatureExtractor(FeatureExtractor&&) noexcept;
+  FeatureExtractor& operator=(FeatureExtractor&&) noexcept;
 
   /// Takes what is new in a scan that is being written. The newest returns wait for a later call,
   /// because a packet that was overtaken may still get in among them.
@@ -32,12 +30,11 @@ class FeatureExtractor {
   void finish(const Scan& scan, ScanFeatures& out);
 
  private:
-  void take(const Scan& scan, std::size_t end);
-
-  bool idle_;  // the profile has no use for features
-  standard::FeatureImage image_;
-  std::size_t taken_ = 0;  // returns of the scan being followed
-  bool spoilt_ = false;    // returns came in before some that were taken
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
+
+/// The most features that a scan of a sensor with so many rings gives, to reserve memory for them.
+std::size_t most_features(const OdometryConfig& config, int rings);
 
 }  // namespace lilo

@@ -1,63 +1,68 @@
 #include "core/odometry.hpp"
 
+#ifdef LILO_PAPER
 #include "core/paper/paper_odometry.hpp"
-#include "core/standard/tracker.hpp"
+#endif
+#include "core/tracking/tracker.hpp"
 
+#include <stdexcept>
 #include <variant>
 
 namespace lilo {
 
-const char* to_string(Stage stage) {
-  switch (stage) {
-    case Stage::project:
-      return "project";
-    case Stage::filter:
-      return "filter";
-    case Stage::reconstruct:
-      return "reconstruct";
-    case Stage::deskew:
-      return "deskew";
-    case Stage::align:
-      return "align";
-    case Stage::update_map:
-      return "update_map";
-  }
-  return "unknown";
-}
+#ifdef LILO_PAPER
+using AnyProfile = std::variant<core::Tracker, paper::PaperOdometry>;
+#else
+using AnyProfile = std::variant<core::Tracker>;
+#endif
 
 struct Odometry::Impl {
-  std::variant<standard::Tracker, paper::PaperOdometry> profile;
+  AnyProfile profile;
   FeatureExtractor extractor;
   ScanFeatures features;
 };
 
+namespace {
+
+AnyProfile make_profile(const OdometryConfig& config) {
+  if (config.profile == Profile::default_profile) return core::Tracker(config);
+#ifdef LILO_PAPER
+  return paper::PaperOdometry(config);
+#else
+  throw std::invalid_argument("odometry.profile: this build has no profile paper");
+#endif
+}
+
+}  // namespace
+
+bool has_profile(Profile profile) {
+#ifdef LILO_PAPER
+  return profile == Profile::default_profile || profile == Profile::paper;
+#else
+  return profile == Profile::default_profile;
+#endif
+}
+
 Odometry::Odometry(const OdometryConfig& config)
-    : impl_(config.profile == Profile::paper
-                ? std::make_unique<Impl>(
-                      Impl{paper::PaperOdometry(config), FeatureExtractor(config), {}})
-                : std::make_unique<Impl>(
-                      Impl{standard::Tracker(config), FeatureExtractor(config), {}})) {}
+    : impl_(new Impl{make_profile(config), FeatureExtractor(config), {}}) {}
 
 Odometry::~Odometry() = default;
 
 Estimate Odometry::process(const Scan& scan, StageHook hook) {
   impl_->extractor.finish(scan, impl_->features);
-  if (std::holds_alternative<standard::Tracker>(impl_->profile)) hook(Stage::project);
+  if (std::holds_alternative<core::Tracker>(impl_->profile)) hook(Stage::project);
   Estimate estimate = align(scan, impl_->features, hook);
   update_map(impl_->features, hook);
   return estimate;
 }
 
 Estimate Odometry::align(const Scan& scan, const ScanFeatures& features, StageHook hook) {
-  if (auto* tracker = std::get_if<standard::Tracker>(&impl_->profile)) {
-    return tracker->align(scan, features.all, hook);
-  }
-  return std::get<paper::PaperOdometry>(impl_->profile).process(scan, hook);
+  return std::visit([&](auto& profile) { return profile.align(scan, features.all, hook); },
+                    impl_->profile);
 }
 
 void Odometry::update_map(const ScanFeatures& features, StageHook hook) {
-  auto* tracker = std::get_if<standard::Tracker>(&impl_->profile);
-  if (tracker != nullptr) tracker->update_map(features.all, hook);
+  std::visit([&](auto& profile) { profile.update_map(features.all, hook); }, impl_->profile);
 }
 
 std::vector<Eigen::Vector3f> Odometry::map_points() const {

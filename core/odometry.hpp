@@ -4,6 +4,7 @@
 #include "core/feature_extractor.hpp"
 #include "core/odometry_config.hpp"
 #include "core/scan.hpp"
+#include "core/stage.hpp"
 
 #include <Eigen/Core>
 
@@ -12,24 +13,14 @@
 
 namespace lilo {
 
-/// The stations of the pipeline, for those who time it.
-enum class Stage : std::uint8_t { project, filter, reconstruct, deskew, align, update_map };
-inline constexpr int kStageCount = 6;
-const char* to_string(Stage stage);
-
-/// Called when a stage of one scan has ended. core has no clock: the caller brings one.
-struct StageHook {
-  void (*done)(void* context, Stage stage) = nullptr;
-  void* context = nullptr;
-  void operator()(Stage stage) const {
-    if (done != nullptr) done(context, stage);
-  }
-};
+/// Whether this build has the profile: `paper` needs OpenCV and PCL and can be left out.
+bool has_profile(Profile profile);
 
 /// LiDAR odometry: scans in, poses out. Same scans, same bits out.
 /// Not thread-safe: one thread calls.
 class Odometry {
  public:
+  /// Throws std::invalid_argument when the build lacks the profile.
   explicit Odometry(const OdometryConfig& config);
   ~Odometry();
   Odometry(const Odometry&) = delete;

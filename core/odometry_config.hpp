@@ -7,8 +7,8 @@ namespace lilo {
 
 /// Which odometry runs.
 enum class Profile : std::uint8_t {
-  standard,  ///< what measures best; users call it "default"
-  paper,     ///< the LiLO paper's method
+  default_profile,  ///< what measures best; `default` is a word of C++
+  paper,            ///< the LiLO paper's method
 };
 
 /// How ground is told from the rest of the image.
@@ -60,7 +60,7 @@ struct PaperConfig {
 };
 
 /// The default profile: features of the image plane on a map of Gaussian cells.
-struct StandardConfig {
+struct DefaultConfig {
   int columns = 1024;             ///< width of the range image; of 64 rings 576 at most
   int ground_features = 900;      ///< features aligned, about so many
   int structure_features = 1100;  ///< everything that is not ground
@@ -78,7 +78,7 @@ struct StandardConfig {
   int segments = 2;               ///< pieces of the motion within one scan, at least
   int max_iterations = 12;
   /// Process noise: power densities of the acceleration's white noise, how fast the motion may
-  /// change. The least that is assumed; more is estimated on the way (standard/process_noise.hpp).
+  /// change. The least that is assumed; more is estimated on the way (motion/process_noise.hpp).
   double roll_pitch_density = 0.3;   ///< rad^2/s^3: suspension, rough ground
   double yaw_density = 0.3;          ///< rad^2/s^3
   double translation_density = 3.0;  ///< m^2/s^3
@@ -86,10 +86,10 @@ struct StandardConfig {
 
 /// Every choice of the odometry. One struct, plain values; see config/*.yaml for the user's view.
 struct OdometryConfig {
-  Profile profile = Profile::standard;
+  Profile profile = Profile::default_profile;
   double min_range_m = 1.0;    ///< nearer returns are not used
   double max_range_m = 100.0;  ///< farther returns are not used
-  StandardConfig standard;
+  DefaultConfig default_profile;
   PaperConfig paper;
 };
 

@@ -111,10 +111,8 @@ void prepare_slot(ScanSlot& slot, SensorModel model, const OdometryConfig& odome
   // With a value: a resize() alone leaves Returns untouched.
   slot.scan.returns.assign(model == SensorModel::hdl64e ? kHdl64eReturns : kVlp16Returns, Return{});
   slot.scan.clear();
-  if (odometry.profile != Profile::standard) return;
   const int rings = model == SensorModel::hdl64e ? 64 : 16;
-  const int columns = standard::FeatureImage::columns_for(rings, odometry.standard.columns);
-  slot.features.all.resize(static_cast<std::size_t>(rings) * static_cast<std::size_t>(columns));
+  slot.features.all.resize(most_features(odometry, rings));
   slot.features.all.clear();
 }
 

@@ -8,7 +8,6 @@
 #include "daemon/pose_message.hpp"
 
 #include <fmt/format.h>
-#include <opencv2/core/utility.hpp>
 #include <spdlog/spdlog.h>
 
 #include <chrono>
@@ -69,10 +68,7 @@ Service::Service(const Config& config, std::string config_path)
       engine_(config, open_udp(config.udp)),
       monitor_(engine_, instance_name(config_path_)),
       publisher_(io_, config, engine_, monitor_),
-      report_ready_(io_, dup(engine_.report_ready().fd())) {
-  // OpenCV's pool would inherit the worker's core and policy, and fight it for both.
-  cv::setNumThreads(1);
-}
+      report_ready_(io_, dup(engine_.report_ready().fd())) {}
 
 void Service::run() {
   const RealtimeReport report = engine_.start();

@@ -2,6 +2,8 @@
 
 #include "core/paper/segmentation.hpp"
 
+#include <opencv2/core/utility.hpp>
+
 #include <algorithm>
 #include <array>
 
@@ -44,7 +46,9 @@ double time_since(std::int64_t last_end_ns, const Scan& scan) {
 PaperOdometry::PaperOdometry(const OdometryConfig& config)
     : config_(config),
       edge_map_(config.paper.edge_voxel_m, config.paper.map_radius_m),
-      surface_map_(config.paper.surface_voxel_m, config.paper.map_radius_m) {}
+      surface_map_(config.paper.surface_voxel_m, config.paper.map_radius_m) {
+  cv::setNumThreads(1);
+}
 
 Estimate PaperOdometry::process(const Scan& scan, StageHook hook) {
   const bool rigid = scan.motion_compensated || config_.paper.deskew == Deskew::none;
@@ -97,8 +101,9 @@ Alignment PaperOdometry::align_to_map(const Reduced& scan, double dt_s) const {
   // whole step, and the search begins wide.
   constexpr std::array<double, 3> kSearch = {3.0, 2.0, 1.0};
   for (std::size_t k = motion_known() ? kSearch.size() - 1 : 0; k < kSearch.size(); ++k) {
-    alignment = align(*scan.edges, *scan.surfaces, edge_map_, surface_map_, alignment.T_odom_sensor,
-                      kSearch[k] * config_.paper.neighbourhood_m, config_.paper);
+    alignment =
+        paper::align(*scan.edges, *scan.surfaces, edge_map_, surface_map_, alignment.T_odom_sensor,
+                     kSearch[k] * config_.paper.neighbourhood_m, config_.paper);
   }
   return alignment;
 }

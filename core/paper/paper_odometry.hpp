@@ -1,8 +1,12 @@
 #pragma once
 
-#include "core/odometry.hpp"
+#include "core/estimate.hpp"
+#include "core/feature.hpp"
+#include "core/odometry_config.hpp"
 #include "core/paper/local_map.hpp"
 #include "core/paper/registration.hpp"
+#include "core/scan.hpp"
+#include "core/stage.hpp"
 
 namespace lilo::paper {
 
@@ -15,8 +19,16 @@ struct Reduced {
 /// The LiLO paper's odometry, Figure 1, with PCL's kd-trees and voxel grids. Allocates as PCL does.
 class PaperOdometry {
  public:
+  /// Sets OpenCV to one thread, for the whole program: its pool would inherit the core and the
+  /// scheduling policy of the thread that calls, and fight it for both.
   explicit PaperOdometry(const OdometryConfig& config);
   Estimate process(const Scan& scan, StageHook hook);
+  /// As profile default is called. The method has no features but its own, and its map grows before
+  /// the pose is out.
+  Estimate align(const Scan& scan, const std::vector<Feature>& /*features*/, StageHook hook) {
+    return process(scan, hook);
+  }
+  void update_map(const std::vector<Feature>& /*features*/, StageHook /*hook*/) {}
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
  private:

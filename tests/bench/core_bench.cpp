@@ -1,14 +1,14 @@
 // How long each kernel of the odometry takes for one scan: a VLP-16 or an HDL-64E in a hall of
 // 40 x 24 x 8 m with a row of pillars, made here. See README.md.
+#include "core/image/feature_image.hpp"
+#include "core/image/selection.hpp"
 #include "core/paper/features.hpp"
 #include "core/paper/range_image.hpp"
 #include "core/paper/registration.hpp"
 #include "core/paper/segmentation.hpp"
-#include "core/standard/feature_image.hpp"
-#include "core/standard/footprint.hpp"
-#include "core/standard/relocalizer.hpp"
-#include "core/standard/selection.hpp"
-#include "core/standard/solver.hpp"
+#include "core/registration/solver.hpp"
+#include "core/search/footprint.hpp"
+#include "core/search/relocalizer.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -72,27 +72,27 @@ int rings_of(const benchmark::State& state) { return static_cast<int>(state.rang
 // Projection and classification, which the class does in one call.
 void image_features(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024, {});
+  core::FeatureImage image(1024, {});
   for (auto _ : state) benchmark::DoNotOptimize(image.build(scan).size());
 }
 
 void selection(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024, {});
+  core::FeatureImage image(1024, {});
   const auto& all = image.build(scan);
-  standard::Selection chosen(1200, 1500);
+  core::Selection chosen(1200, 1500);
   for (auto _ : state) benchmark::DoNotOptimize(chosen.choose(all).size());
 }
 
 // One turn and the 25 speeds that share it, as in the search for the motion at the start.
 void footprint(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024, {});
-  standard::Selection chosen(1200, 1500);
-  standard::Outline outline;
+  core::FeatureImage image(1024, {});
+  core::Selection chosen(1200, 1500);
+  core::Outline outline;
   outline.assign(chosen.choose(image.build(scan)));
-  standard::Plan plan;
-  standard::Footprint laid(chosen.most());
+  core::Plan plan;
+  core::Footprint laid(chosen.most());
   const Eigen::Quaterniond ahead = Eigen::Quaterniond::Identity();
   for (auto _ : state) {
     plan.assign(outline, ahead, ahead);
@@ -105,42 +105,42 @@ void footprint(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * 25 * static_cast<std::int64_t>(outline.s.size()));
 }
 
-standard::CellMap empty_map(float cell_m) {
-  return standard::CellMap({.cell_m = cell_m, .capacity = 120'000});
+core::CellMap empty_map(float cell_m) {
+  return core::CellMap({.cell_m = cell_m, .capacity = 120'000});
 }
 
-Eigen::Vector3d position_of(const standard::Feature& f) {
+Eigen::Vector3d position_of(const Feature& f) {
   return Eigen::Vector3f(f.x_m, f.y_m, f.z_m).cast<double>();
 }
 
-void fill(standard::CellMap& map, const std::vector<standard::Feature>& features) {
-  for (const standard::Feature& f : features) map.insert(position_of(f), {f.dx_m, f.dy_m, f.dz_m});
+void fill(core::CellMap& map, const std::vector<Feature>& features) {
+  for (const Feature& f : features) map.insert(position_of(f), {f.dx_m, f.dy_m, f.dz_m});
 }
 
 // As far as it ever looks, the map being drawn already.
 void relocalization(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024, {});
+  core::FeatureImage image(1024, {});
   const auto& features = image.build(scan);
-  standard::CellMap map = empty_map(1.5F);
+  core::CellMap map = empty_map(1.5F);
   fill(map, features);
-  standard::Selection chosen(1200, 1500);
+  core::Selection chosen(1200, 1500);
   const auto& asked = chosen.choose(features);
-  standard::Trajectory standing;
-  standing.knots = standard::Unknowns::Zero(Eigen::Index{standard::kKnotSize} * 2);
-  standard::Relocalizer relocalizer(chosen.most());
+  core::Trajectory standing;
+  standing.knots = core::Unknowns::Zero(Eigen::Index{core::kKnotSize} * 2);
+  core::Relocalizer relocalizer(chosen.most());
   relocalizer.set_map(map, Eigen::Vector3d::Zero());
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        relocalizer.search(asked, standing, standard::Relocalizer::kFarthest).data());
+        relocalizer.search(asked, standing, core::Relocalizer::kFarthest).data());
   }
 }
 
 void cell_map_insert(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024, {});
+  core::FeatureImage image(1024, {});
   const auto& features = image.build(scan);
-  standard::CellMap map = empty_map(0.5F);
+  core::CellMap map = empty_map(0.5F);
   for (auto _ : state) {
     fill(map, features);
     state.PauseTiming();
@@ -153,12 +153,12 @@ void cell_map_insert(benchmark::State& state) {
 // Fits are in the cache, as for most points of a scan.
 void cell_map_find(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024, {});
+  core::FeatureImage image(1024, {});
   const auto& features = image.build(scan);
-  standard::CellMap map = empty_map(0.5F);
+  core::CellMap map = empty_map(0.5F);
   fill(map, features);
   for (auto _ : state)
-    for (const standard::Feature& f : features)
+    for (const Feature& f : features)
       benchmark::DoNotOptimize(map.find(position_of(f)).information);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(features.size()));
 }
@@ -166,22 +166,22 @@ void cell_map_find(benchmark::State& state) {
 // One Gauss-Newton round on selected features, the sensor at rest.
 void solver_round(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
-  standard::FeatureImage image(1024, {});
+  core::FeatureImage image(1024, {});
   const auto& all = image.build(scan);
   const auto level = [](float cell_m) {
-    const standard::CellMapConfig config{.cell_m = cell_m, .capacity = 100000};
+    const core::CellMapConfig config{.cell_m = cell_m, .capacity = 100000};
     return std::array{config, config};
   };
-  standard::LocalMaps maps({level(0.25F), level(0.5F), level(1.5F)});
-  std::vector<standard::LocalMaps::Point> points;
+  core::LocalMaps maps({level(0.25F), level(0.5F), level(1.5F)});
+  std::vector<core::LocalMaps::Point> points;
   points.reserve(all.size());
-  for (const standard::Feature& f : all) {
+  for (const Feature& f : all) {
     points.push_back({position_of(f), {f.dx_m, f.dy_m, f.dz_m}, f.kind});
   }
-  maps.insert(points, standard::LocalMaps::kUsual);
-  standard::Selection selection(1200, 1500);
+  maps.insert(points, core::LocalMaps::kUsual);
+  core::Selection selection(1200, 1500);
   const auto& chosen = selection.choose(all);
-  standard::Solver solver({.segments = 2, .max_iterations = 1}, 4096);
+  core::Solver solver({.segments = 2, .max_iterations = 1}, 4096);
   int matched = 0;
   for (auto _ : state) matched = solver.solve(chosen, maps, {}).matched;
   state.counters["matched"] = matched;

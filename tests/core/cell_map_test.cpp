@@ -1,4 +1,4 @@
-#include "core/standard/cell_map.hpp"
+#include "core/map/cell_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace lilo::standard {
+namespace lilo::core {
 namespace {
 
 class Filled : public testing::Test {
@@ -212,4 +212,4 @@ TEST_F(Filled, GivesTheMeanOfEveryCell) {
 }
 
 }  // namespace
-}  // namespace lilo::standard
+}  // namespace lilo::core

@@ -1,4 +1,4 @@
-#include "core/standard/cell_table.hpp"
+#include "core/map/cell_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-namespace lilo::standard {
+namespace lilo::core {
 namespace {
 
 // As full as a table may be, and its cells crowd around the origin, on both sides of it: searches
@@ -77,4 +77,4 @@ TEST(CellTable, KnowsTheCellAbove) {
 }
 
 }  // namespace
-}  // namespace lilo::standard
+}  // namespace lilo::core

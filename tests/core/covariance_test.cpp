@@ -1,5 +1,5 @@
 #include "core/odometry.hpp"
-#include "core/standard/drift.hpp"
+#include "core/tracking/drift.hpp"
 #include "tests/core/analytic_scene.hpp"
 
 #include <Eigen/Cholesky>
@@ -88,7 +88,7 @@ TEST(Covariance, GrowsWithTheWay) {
 }
 
 TEST(Drift, AnErrorOfHeadingMovesAsideWhatLiesAhead) {
-  standard::Drift drift;
+  core::Drift drift;
   Matrix6d heading = Matrix6d::Zero();
   heading(2, 2) = 1e-4;  // 0.01 rad about z
   drift.begin(heading);
@@ -107,7 +107,7 @@ TEST(Drift, ASteadyErrorAddsUpAlongTheWayAndComesBackOnALoop) {
   const Eigen::Quaterniond back(0.0, 0.0, 0.0, 1.0);  // about the upright
   constexpr int kOld = 100, kTimes = 1000;
   const double random_m2 = kTimes * std::pow(kSigma_m / 13.0, 2);
-  standard::Drift away, loop;
+  core::Drift away, loop;
   for (int k = 0; k < kTimes; ++k) {
     away.inherit(alignment, ahead, kOld);
     loop.inherit(alignment, k < kTimes / 2 ? ahead : back, kOld);
@@ -120,7 +120,7 @@ TEST(Drift, ASteadyErrorAddsUpAlongTheWayAndComesBackOnALoop) {
 // A position under white noise q on acceleration is uncertain by q t^3 / 3.
 TEST(Drift, WhatNoScanTellsIsDeadReckoned) {
   constexpr double kDensity = 3.0, kScan_s = 0.01;
-  standard::Drift drift;
+  core::Drift drift;
   for (int scan = 0; scan < 1000; ++scan) drift.coast({0.6, 0.8, 0.0}, kDensity, kScan_s);
   const Matrix6d covariance = drift.covariance();
   EXPECT_NEAR(covariance(3, 3) / (0.36 * kDensity * 1000.0 / 3.0), 1.0, 0.01);
@@ -132,7 +132,7 @@ TEST(Drift, SensorAxesTurnWithTheSensor) {
   Matrix6d along_x = Matrix6d::Zero();
   along_x(3, 3) = 4.0;
   const Eigen::Quaterniond left(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
-  const Matrix6d seen = standard::translation_first(standard::in_sensor_axes(along_x, left));
+  const Matrix6d seen = core::translation_first(core::in_sensor_axes(along_x, left));
   EXPECT_NEAR(seen(1, 1), 4.0, 1e-12);  // odometry's x is on the sensor's right
   EXPECT_NEAR(seen(0, 0), 0.0, 1e-12);
 }

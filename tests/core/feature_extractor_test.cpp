@@ -33,7 +33,7 @@ Scan fanned_scan(double start_azimuth_rad, bool counter_clockwise = false, int f
   return scan;
 }
 
-auto values_of(const standard::Feature& f) {
+auto values_of(const Feature& f) {
   return std::tuple(f.x_m, f.y_m, f.z_m, f.s, f.dx_m, f.dy_m, f.dz_m, f.kind, f.ring);
 }
 
@@ -141,7 +141,7 @@ TEST_F(InParts, WithPacketsThatWereOvertaken) {
 
 // The daemon's way and that of the tools.
 TEST(FeatureExtractor, MakesTheSameTrajectoryInParts) {
-  for (const Profile profile : {Profile::standard, Profile::paper}) {
+  for (const Profile profile : {Profile::default_profile, Profile::paper}) {
     OdometryConfig config;
     config.profile = profile;
     Odometry whole(config), in_parts(config);

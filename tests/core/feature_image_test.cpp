@@ -1,7 +1,7 @@
 // What the image plane says of returns, against scenes whose every range has a closed form.
-#include "core/standard/feature_image.hpp"
+#include "core/image/feature_image.hpp"
 
-#include "core/standard/cell_map.hpp"
+#include "core/map/cell_map.hpp"
 #include "tests/core/analytic_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -27,11 +27,11 @@ double azimuth_of(int column, int columns) {
   return std::numbers::pi * (1.0 - 2.0 * (column + 0.5) / columns);
 }
 
-Eigen::Vector3d place_of(const standard::Feature& f) {
+Eigen::Vector3d place_of(const Feature& f) {
   return Eigen::Vector3f(f.x_m, f.y_m, f.z_m).cast<double>();
 }
 
-Eigen::Vector3d reach_of(const standard::Feature& f) {
+Eigen::Vector3d reach_of(const Feature& f) {
   return Eigen::Vector3f(f.dx_m, f.dy_m, f.dz_m).cast<double>();
 }
 
@@ -48,11 +48,11 @@ Return return_at(const BeamTable& beams, std::uint8_t ring, double azimuth_rad, 
 TEST(FeatureImage, TellsGroundFromWalls) {
   const test::Scene scene = test::yard();
   const Scan scan = test::still_scan_of(scene, k16, {});
-  standard::FeatureImage image(1024, {});
+  core::FeatureImage image(1024, {});
   int ground = 0, structure = 0, wrong = 0;
-  for (const standard::Feature& f : image.build(scan)) {
+  for (const Feature& f : image.build(scan)) {
     const bool on_ground = std::abs(static_cast<double>(f.z_m) + 1.5) < 1e-3;
-    const bool said_ground = f.kind == standard::Kind::ground;
+    const bool said_ground = f.kind == FeatureKind::ground;
     (said_ground ? ground : structure)++;
     if (on_ground != said_ground) ++wrong;
   }
@@ -67,24 +67,24 @@ TEST(FeatureImage, WhatOneRingHitsMayBeAsHighAsTheNextOneLooks) {
   Scan scan;
   scan.beams = k16;
   scan.end_ns = 100'000'000;
-  standard::CellMap map({.cell_m = 0.5F});
-  standard::FeatureImage image(1024, {});
+  core::CellMap map({.cell_m = 0.5F});
+  core::FeatureImage image(1024, {});
   for (int k = -10; k <= 10; ++k) {
     const double azimuth = 0.006 * k;
     scan.returns.push_back(return_at(k16, 9, azimuth, 30.0 / std::cos(azimuth)));
   }
-  for (const standard::Feature& f : image.build(scan)) {
+  for (const Feature& f : image.build(scan)) {
     const Eigen::Vector3d p = place_of(f), up = reach_of(f);
     EXPECT_NEAR(up.norm(), p.norm() * gap_rad, 1e-3);
     EXPECT_NEAR(up.normalized().dot(p.normalized()), 0.0, 1e-5);
     EXPECT_GT(up.z(), 0.0);
     map.insert(p, up.cast<float>());
   }
-  const standard::Match match = map.find({30.0, 0.0, 30.0 * std::tan(w)});
+  const core::Match match = map.find({30.0, 0.0, 30.0 * std::tan(w)});
   ASSERT_NE(match.information, nullptr);
-  const standard::Symmetric& i = *match.information;  // xx xy xz yy yz zz
-  EXPECT_GT(i[0], 50.0F);                             // how far it is
-  EXPECT_LT(i[5], 0.05F * i[0]);                      // but not how high
+  const core::Symmetric& i = *match.information;  // xx xy xz yy yz zz
+  EXPECT_GT(i[0], 50.0F);                         // how far it is
+  EXPECT_LT(i[5], 0.05F * i[0]);                  // but not how high
 }
 
 // The lasers of one firing of a VLP-16 look up to 0.13 degrees apart, so that a firing straddles
@@ -101,12 +101,12 @@ TEST(FeatureImage, FindsTheNextRingInTheColumnBeside) {
     r.azimuth_rad = std::atan2(r.y_m, r.x_m);
   }
   for (const int columns : {720, 1024, 1800, 2048}) {
-    standard::FeatureImage image(columns, {});
+    core::FeatureImage image(columns, {});
     int all = 0, wrong = 0;
-    for (const standard::Feature& f : image.build(scan)) {
+    for (const Feature& f : image.build(scan)) {
       if (f.ring == 7) continue;  // meets the ground 86 m off, three times as far as the next
       ++all;
-      if (f.kind != standard::Kind::ground) ++wrong;
+      if (f.kind != FeatureKind::ground) ++wrong;
     }
     EXPECT_GT(all, 5 * columns) << columns;  // of seven rings
     EXPECT_LE(wrong, 7) << columns << ": more than a column of " << all;
@@ -121,8 +121,8 @@ TEST(FeatureImage, BelievesTheGroundBetweenNeighbouringRingsOnlyUpToTenMetres) {
     return -1.5 / std::tan(static_cast<double>(k16.elevation_rad[static_cast<std::size_t>(ring)]));
   };
   std::array<int, 8> count{};
-  standard::FeatureImage image(1024, {});
-  for (const standard::Feature& f : image.build(test::still_scan_of(plain, k16, {}))) {
+  core::FeatureImage image(1024, {});
+  for (const Feature& f : image.build(test::still_scan_of(plain, k16, {}))) {
     if (f.ring == 7) continue;  // meets the ground 86 m off, three times as far as the next
     ASSERT_LT(f.ring, 7);
     ++count[f.ring];
@@ -144,10 +144,10 @@ TEST(FeatureImage, BelievesTheGroundBetweenNeighbouringRingsOnlyUpToTenMetres) {
 TEST(FeatureImage, MakesNoRampOfFloorAndWall) {
   test::Scene hall;
   hall.planes = {{{0.0, 0.0, 1.0}, -0.8}, {{-1.0, 0.0, 0.0}, -9.6}, {{1.0, 0.0, 0.0}, -3.05}};
-  standard::FeatureImage image(1024, {});
+  core::FeatureImage image(1024, {});
   int ground = 0;
-  for (const standard::Feature& f : image.build(test::still_scan_of(hall, k16, {}))) {
-    if (f.kind != standard::Kind::ground) continue;
+  for (const Feature& f : image.build(test::still_scan_of(hall, k16, {}))) {
+    if (f.kind != FeatureKind::ground) continue;
     const Eigen::Vector3d p = place_of(f), reach = reach_of(f);
     EXPECT_NEAR(p.z(), -0.8, 1e-3) << int{f.ring};
     const bool along_floor = std::abs(reach.z()) < 1e-3;
@@ -168,11 +168,11 @@ TEST(FeatureImage, TakesNothingAboveTheHorizonFromTheColumnBeside) {
     const auto ring = static_cast<std::uint8_t>(11 + column % 2);
     scan.returns.push_back(return_at(k16, ring, azimuth_of(column, kColumns), 20.0));
   }
-  standard::FeatureImage image(kColumns, {});
-  const std::vector<standard::Feature>& features = image.build(scan);
+  core::FeatureImage image(kColumns, {});
+  const std::vector<Feature>& features = image.build(scan);
   ASSERT_EQ(features.size(), kColumns);
-  for (const standard::Feature& f : features) {
-    EXPECT_EQ(f.kind, standard::Kind::structure);
+  for (const Feature& f : features) {
+    EXPECT_EQ(f.kind, FeatureKind::structure);
     EXPECT_NEAR(f.dz_m, 20.0 * 2.0 * std::numbers::pi / 180.0, 1e-3);  // nobody knows
   }
 }
@@ -194,13 +194,13 @@ TEST(FeatureImage, WaitsForTheColumnBeside) {
       if (column == 101) scan.returns.push_back(ground(seen, 1));
       scan.returns.push_back(ground(column, 0));
     }
-    standard::FeatureImage image(kColumns, {});
+    core::FeatureImage image(kColumns, {});
     image.begin(beams);
     image.add(std::span(scan.returns).first(101));
     image.add(std::span(scan.returns).subspan(101));
     std::vector<int> beside;  // columns, from the one with the return
-    for (const standard::Feature& f : image.finish(scan)) {
-      if (f.kind != standard::Kind::ground || f.ring == 1) continue;
+    for (const Feature& f : image.finish(scan)) {
+      if (f.kind != FeatureKind::ground || f.ring == 1) continue;
       const double azimuth = std::atan2(static_cast<double>(f.y_m), static_cast<double>(f.x_m));
       const double column = (1.0 - azimuth / std::numbers::pi) * kColumns / 2.0;
       beside.push_back(static_cast<int>(column) - seen);
@@ -215,7 +215,7 @@ TEST(FeatureImage, APixelKeepsItsFirstGoodReturn) {
   const auto below = [&rng](unsigned n) { return static_cast<int>(rng() % n); };
   for (const int rings : {16, 64}) {
     const BeamTable beams = test::even_beams(rings, -15.0, 15.0);
-    const int columns = standard::FeatureImage::columns_for(rings, 1024);
+    const int columns = core::FeatureImage::columns_for(rings, 1024);
     Scan all, good;
     for (Scan* scan : {&all, &good}) {
       scan->beams = beams;
@@ -235,7 +235,7 @@ TEST(FeatureImage, APixelKeepsItsFirstGoodReturn) {
       if (is_near || is_none || is_foreign) continue;
       if (taken.emplace(r.ring, column).second) good.returns.push_back(r);
     }
-    standard::FeatureImage image(1024, {}), expected_image(1024, {});
+    core::FeatureImage image(1024, {}), expected_image(1024, {});
     const auto& found = image.build(all);
     const auto& expected = expected_image.build(good);
     EXPECT_GT(expected.size(), good.returns.size() / 2);

@@ -1,7 +1,7 @@
-#include "core/standard/footprint.hpp"
+#include "core/search/footprint.hpp"
 
-#include "core/standard/feature_image.hpp"
-#include "core/standard/trajectory.hpp"
+#include "core/image/feature_image.hpp"
+#include "core/motion/trajectory.hpp"
 #include "tests/core/analytic_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace lilo::standard {
+namespace lilo::core {
 namespace {
 
 constexpr double kSpan_s = 0.1;
@@ -103,7 +103,7 @@ TEST(Outline, BeginsWithEveryFourth) {
   std::vector<float> all_m;
   for (std::size_t k = 0; k < features.size(); ++k) {
     features[k].x_m = static_cast<float>(k);
-    features[k].kind = k % 2 == 0 ? Kind::structure : Kind::ground;
+    features[k].kind = k % 2 == 0 ? FeatureKind::structure : FeatureKind::ground;
     if (k % 2 == 0) all_m.push_back(features[k].x_m);
   }
   Outline outline;
@@ -127,9 +127,9 @@ TEST(Footprint, OfTheSameScanTwiceIsThatOfOne) {
 TEST(Footprint, GroundTakesNoRoom) {
   Feature ground{};
   ground.x_m = 5.0F;
-  ground.kind = Kind::ground;
+  ground.kind = FeatureKind::ground;
   EXPECT_EQ(cells_under({{ground}}, ahead(0.0)), 0);
-  ground.kind = Kind::structure;
+  ground.kind = FeatureKind::structure;
   EXPECT_EQ(cells_under({{ground}}, ahead(0.0)), 1);
 }
 
@@ -146,7 +146,7 @@ Feature post_at(float x_m, float y_m) {
   Feature post{};
   post.x_m = x_m;
   post.y_m = y_m;
-  post.kind = Kind::structure;
+  post.kind = FeatureKind::structure;
   return post;
 }
 
@@ -200,4 +200,4 @@ TEST(Footprint, LeavesOutWhatNoCellCanHold) {
 }
 
 }  // namespace
-}  // namespace lilo::standard
+}  // namespace lilo::core

@@ -1,11 +1,11 @@
 // Features are matched at the finest level of the map that knows their surroundings.
-#include "core/standard/local_maps.hpp"
+#include "core/map/local_maps.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace lilo::standard {
+namespace lilo::core {
 namespace {
 
 LocalMaps maps() {
@@ -25,13 +25,14 @@ std::vector<LocalMaps::Point> wall(double half_width_m) {
   std::vector<LocalMaps::Point> points;
   points.reserve(kPoints);
   for (int k = 0; k < kPoints; ++k) {
-    points.push_back({{4.0, along(rng), along(rng)}, Eigen::Vector3f::Zero(), Kind::structure});
+    points.push_back(
+        {{4.0, along(rng), along(rng)}, Eigen::Vector3f::Zero(), FeatureKind::structure});
   }
   return points;
 }
 
 bool knows(LocalMaps& maps, std::size_t level, const Eigen::Vector3d& point_m) {
-  return maps.at(level, Kind::structure).find(point_m).information != nullptr;
+  return maps.at(level, FeatureKind::structure).find(point_m).information != nullptr;
 }
 
 TEST(LocalMaps, HalfCellsAreFilledInNarrowSurroundingsOnly) {
@@ -44,7 +45,8 @@ TEST(LocalMaps, HalfCellsAreFilledInNarrowSurroundingsOnly) {
   for (LocalMaps* one : {&outdoors, &indoors}) {
     EXPECT_TRUE(knows(*one, LocalMaps::kUsual, probe));
     EXPECT_TRUE(knows(*one, LocalMaps::kCoarse, probe));
-    EXPECT_FALSE(one->at(LocalMaps::kUsual, Kind::ground).find(probe).information != nullptr);
+    EXPECT_FALSE(one->at(LocalMaps::kUsual, FeatureKind::ground).find(probe).information !=
+                 nullptr);
   }
 }
 
@@ -59,8 +61,8 @@ TEST(LocalMaps, HalfCellsTellApartWhatWholeOnesBlur) {
   }
   both.insert(points, LocalMaps::kNarrow);
   const Eigen::Vector3d on_wall(4.0, 0.1, 0.1);
-  const Match narrow = both.at(LocalMaps::kNarrow, Kind::structure).find(on_wall);
-  const Match usual = both.at(LocalMaps::kUsual, Kind::structure).find(on_wall);
+  const Match narrow = both.at(LocalMaps::kNarrow, FeatureKind::structure).find(on_wall);
+  const Match usual = both.at(LocalMaps::kUsual, FeatureKind::structure).find(on_wall);
   ASSERT_NE(narrow.information, nullptr);
   EXPECT_NEAR(narrow.from_mean_m.x(), 0.0F, 0.01F);
   const float across = (*narrow.information)[0];
@@ -72,11 +74,11 @@ TEST(LocalMaps, ForgetsHalfCellsNearer) {
   LocalMaps one = maps();
   one.insert(wall(2.0), LocalMaps::kNarrow);
   for (int sweep = 0; sweep < 200; ++sweep) one.forget_beyond({-30.0, 0.0, 0.0}, 100.0);
-  EXPECT_EQ(one.at(LocalMaps::kNarrow, Kind::structure).size(), 0);
-  EXPECT_GT(one.at(LocalMaps::kUsual, Kind::structure).size(), 0);
+  EXPECT_EQ(one.at(LocalMaps::kNarrow, FeatureKind::structure).size(), 0);
+  EXPECT_GT(one.at(LocalMaps::kUsual, FeatureKind::structure).size(), 0);
   one.clear();
   EXPECT_EQ(one.size(), 0);
 }
 
 }  // namespace
-}  // namespace lilo::standard
+}  // namespace lilo::core

@@ -34,9 +34,10 @@ TEST_P(MapPoints, LieOnTheScene) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Profiles, MapPoints, testing::Values(Profile::standard, Profile::paper),
+INSTANTIATE_TEST_SUITE_P(Profiles, MapPoints,
+                         testing::Values(Profile::default_profile, Profile::paper),
                          [](const auto& test) {
-                           return test.param == Profile::paper ? "paper" : "standard";
+                           return test.param == Profile::paper ? "paper" : "default";
                          });
 
 }  // namespace

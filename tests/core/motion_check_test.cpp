@@ -1,4 +1,4 @@
-#include "core/standard/motion_check.hpp"
+#include "core/tracking/motion_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace lilo::standard {
+namespace lilo::core {
 namespace {
 
 constexpr double kSpan_s = 0.1;
@@ -31,7 +31,7 @@ class Road {
       f.x_m = static_cast<float>(moves ? p_m.x() : p_m.x() - x_m);
       f.y_m = static_cast<float>(p_m.y());
       f.s = static_cast<float>(s);
-      f.kind = Kind::structure;
+      f.kind = FeatureKind::structure;
       features.push_back(f);
     };
     for (const Eigen::Vector2d& post : posts_m_)
@@ -88,7 +88,7 @@ TEST(MotionCheck, WhereScansDoNotMeetNothingIsRefuted) {
     for (Feature& f : features) {
       f.x_m = anywhere_m(random);
       f.y_m = anywhere_m(random);
-      f.kind = Kind::structure;
+      f.kind = FeatureKind::structure;
     }
     check.see(features, {}, {}, kSpan_s, std::llround(1e9 * kSpan_s * k));
     EXPECT_FALSE(check.is_refuted({1.0, 0.0}));
@@ -106,4 +106,4 @@ TEST(MotionCheck, AfterAClearItBeginsAgain) {
 }
 
 }  // namespace
-}  // namespace lilo::standard
+}  // namespace lilo::core

@@ -1,5 +1,5 @@
 // The process noise is estimated from the motion, and a motion that was not expected is followed.
-#include "core/standard/process_noise.hpp"
+#include "core/motion/process_noise.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-namespace lilo::standard {
+namespace lilo::core {
 namespace {
 
 constexpr std::int64_t kScan_ns = 100'000'000;
@@ -147,4 +147,4 @@ TEST(Segments, AreAsManyAsTheProcessNoiseAsksFor) {
 }
 
 }  // namespace
-}  // namespace lilo::standard
+}  // namespace lilo::core

@@ -1,4 +1,4 @@
-#include "core/standard/relocalizer.hpp"
+#include "core/search/relocalizer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace lilo::standard {
+namespace lilo::core {
 namespace {
 
 constexpr double kSpan_s = 0.1;
@@ -51,7 +51,7 @@ std::vector<Feature> seen_from(const Trajectory& way,
     f.x_m = static_cast<float>(p.x());
     f.y_m = static_cast<float>(p.y());
     f.z_m = static_cast<float>(p.z());
-    f.kind = Kind::structure;
+    f.kind = FeatureKind::structure;
     features.push_back(f);
   }
   return features;
@@ -161,4 +161,4 @@ TEST(Relocalizer, KnowsOnlyTheMapItWasGivenLast) {
 }
 
 }  // namespace
-}  // namespace lilo::standard
+}  // namespace lilo::core

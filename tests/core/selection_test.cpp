@@ -1,5 +1,5 @@
 // Which features are taken.
-#include "core/standard/selection.hpp"
+#include "core/image/selection.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace lilo::standard {
+namespace lilo::core {
 namespace {
 
 // Open ground fills every column with the same rings.
@@ -67,7 +67,7 @@ TEST(Selection, TakesEnoughOfANarrowPlaceAtOnce) {
     f.x_m = 0.05F * static_cast<float>(k % 120);
     f.y_m = k % 2 == 0 ? -1.0F : 1.0F;
     f.z_m = 0.05F * static_cast<float>(k / 120 % 30);
-    f.kind = Kind::structure;
+    f.kind = FeatureKind::structure;
     all.push_back(f);
   }
   Selection selection(900, 1100);
@@ -82,7 +82,7 @@ TEST(Selection, FavoursNoSideOfAVoxel) {
   for (int k = 0; k < kPerMetre * kLength_m; ++k) {
     Feature f{};
     f.x_m = (static_cast<float>(k) + 0.5F) / kPerMetre;
-    f.kind = Kind::structure;
+    f.kind = FeatureKind::structure;
     all.push_back(f);
   }
   Selection selection(400, kLength_m);
@@ -104,4 +104,4 @@ TEST(Selection, TakesWhatThereIs) {
 }
 
 }  // namespace
-}  // namespace lilo::standard
+}  // namespace lilo::core

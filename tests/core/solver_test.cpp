@@ -1,11 +1,11 @@
 // The solver by itself: a pose is found again from a map made at another one.
-#include "core/standard/solver.hpp"
+#include "core/registration/solver.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace lilo::standard {
+namespace lilo::core {
 namespace {
 
 constexpr double kSpan_s = 0.1;
@@ -36,7 +36,7 @@ LocalMaps map_of(const std::vector<Eigen::Vector3d>& points, const Pose& T_odom_
   std::vector<LocalMaps::Point> of_map;
   of_map.reserve(points.size());
   for (const Eigen::Vector3d& p : points) {
-    of_map.push_back({T_odom_room * p, Eigen::Vector3f::Zero(), Kind::structure});
+    of_map.push_back({T_odom_room * p, Eigen::Vector3f::Zero(), FeatureKind::structure});
   }
   maps.insert(of_map, LocalMaps::kUsual);
   return maps;
@@ -51,7 +51,7 @@ std::vector<Feature> scan_of(const std::vector<Eigen::Vector3d>& points, const P
     const Eigen::Vector3f p =
         (moved(T_begin, twist, s * kSpan_s).inverse() * points[k]).cast<float>();
     features.push_back(
-        {p.x(), p.y(), p.z(), static_cast<float>(s), 0.0F, 0.0F, 0.0F, Kind::structure, 0});
+        {p.x(), p.y(), p.z(), static_cast<float>(s), 0.0F, 0.0F, 0.0F, FeatureKind::structure, 0});
   }
   return features;
 }
@@ -97,4 +97,4 @@ TEST(Solver, DoesNotCareHowTheOdometryFrameIsTurned) {
 }
 
 }  // namespace
-}  // namespace lilo::standard
+}  // namespace lilo::core

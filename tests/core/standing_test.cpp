@@ -1,5 +1,5 @@
 // A sensor that stands is not dragged along by what sets off around it.
-#include "core/standard/standing.hpp"
+#include "core/motion/standing.hpp"
 
 #include "core/odometry.hpp"
 #include "tests/core/analytic_scene.hpp"
@@ -12,8 +12,8 @@
 namespace lilo {
 namespace {
 
-using standard::Prior;
-using standard::Standing;
+using core::Prior;
+using core::Standing;
 
 const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
 

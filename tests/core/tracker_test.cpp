@@ -1,7 +1,7 @@
+#include "core/image/feature_image.hpp"
+#include "core/map/cell_map.hpp"
+#include "core/motion/trajectory.hpp"
 #include "core/odometry.hpp"
-#include "core/standard/cell_map.hpp"
-#include "core/standard/feature_image.hpp"
-#include "core/standard/trajectory.hpp"
 #include "tests/core/analytic_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(DefaultProfile, FollowsADriveWithSixteenBeams) {
 TEST(DefaultProfile, CountsWhatAFullMapHasNoRoomFor) {
   EXPECT_EQ(run(k16, 6.0, 0.0, 3).estimates.back().map_refused_count, 0U);
   OdometryConfig config;
-  config.standard.map_cells = 400;
+  config.default_profile.map_cells = 400;
   Odometry odometry{config};
   std::uint64_t refused_before = 0;
   for (std::uint64_t k = 0; k < 3; ++k) {
@@ -251,10 +251,10 @@ TEST(DefaultProfile, AScanWithoutBeamsIsNoReasonToThrow) {
 }
 
 TEST(Trajectory, IsTheCubicThroughItsKnots) {
-  standard::Trajectory t;
+  core::Trajectory t;
   t.span_s = 0.1;
   t.segments = 2;
-  t.knots = standard::Unknowns::Zero(36);
+  t.knots = core::Unknowns::Zero(36);
   // d(time) = c time^3 in x: knots hold its value and derivative; between them it must come back.
   const double c = 40.0;
   for (int k = 0; k <= 2; ++k) {
@@ -271,7 +271,7 @@ TEST(Trajectory, IsTheCubicThroughItsKnots) {
 
 // The computer's clock is set while the robot drives: stamps jump, the sensor did not.
 TEST(DefaultProfile, AStepOfTheClockBendsNothing) {
-  for (const Profile profile : {Profile::standard, Profile::paper}) {
+  for (const Profile profile : {Profile::default_profile, Profile::paper}) {
     OdometryConfig config;
     config.profile = profile;
     Odometry steady(config), stepped(config);

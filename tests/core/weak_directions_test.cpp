@@ -1,4 +1,4 @@
-#include "core/standard/weak_directions.hpp"
+#include "core/registration/weak_directions.hpp"
 
 #include "core/odometry.hpp"
 #include "core/pose.hpp"
@@ -43,8 +43,7 @@ TEST(WeakDirections, IsTheOneThatTheScanLeavesToThePrediction) {
   prediction << 100, 100, 100, 100, 100, 100;
   const Eigen::Quaterniond quarter_turn(
       Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
-  const auto weak =
-      standard::weak_directions(scan.asDiagonal(), prediction.asDiagonal(), quarter_turn);
+  const auto weak = core::weak_directions(scan.asDiagonal(), prediction.asDiagonal(), quarter_turn);
   ASSERT_EQ(weak.count, 1);
   EXPECT_NEAR(weak.all[0].from_scan, 0.2, 1e-9);  // 25 of 125
   // y of the odometry's frame is x of a sensor that is turned left by a quarter.
@@ -53,12 +52,12 @@ TEST(WeakDirections, IsTheOneThatTheScanLeavesToThePrediction) {
 
 TEST(WeakDirections, NoneWhereTheScanKnowsMore) {
   const Matrix6d one = Matrix6d::Identity();
-  EXPECT_EQ(standard::weak_directions(1.1 * one, one, Eigen::Quaterniond::Identity()).count, 0);
+  EXPECT_EQ(core::weak_directions(1.1 * one, one, Eigen::Quaterniond::Identity()).count, 0);
 }
 
 TEST(WeakDirections, AScanThatSaysNothingIsWeakEverywhere) {
-  const auto weak = standard::weak_directions(Matrix6d::Zero(), Matrix6d::Identity(),
-                                              Eigen::Quaterniond::Identity());
+  const auto weak =
+      core::weak_directions(Matrix6d::Zero(), Matrix6d::Identity(), Eigen::Quaterniond::Identity());
   ASSERT_EQ(weak.count, 6);
   for (const WeakDirection& one : weak.all) EXPECT_EQ(one.from_scan, 0.0);
 }

@@ -31,7 +31,7 @@ void expect_features_of_whole_scan(const ScanSlot& slot) {
   extractor.finish(slot.scan, whole);
   EXPECT_GT(whole.all.size(), 10'000U);
   ASSERT_EQ(slot.features.all.size(), whole.all.size()) << "scan " << slot.scan.index;
-  const auto same = [](const standard::Feature& a, const standard::Feature& b) {
+  const auto same = [](const Feature& a, const Feature& b) {
     return a.x_m == b.x_m && a.y_m == b.y_m && a.z_m == b.z_m && a.s == b.s && a.kind == b.kind;
   };
   EXPECT_TRUE(std::equal(whole.all.begin(), whole.all.end(), slot.features.all.begin(), same))
@@ -226,7 +226,7 @@ TEST(PrepareSlot, TouchesWhatAScanNeeds) {
   EXPECT_GE(returns.capacity(), 133'333U);  // a turn at 10 Hz
   const long before = minor_faults();
   returns.assign(returns.capacity(), Return{});
-  features.assign(features.capacity(), standard::Feature{});
+  features.assign(features.capacity(), Feature{});
   EXPECT_LT(minor_faults() - before, 20);
 }
 

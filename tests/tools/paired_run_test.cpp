@@ -30,9 +30,9 @@ TEST(PairedRun, EachProfileDoesAsIfItWereAlone) {
   EXPECT_EQ(run.set, "kitti_00");
   EXPECT_EQ(run.beams, 64);
   EXPECT_EQ(run.decode_ms.size(), kScans);
-  EXPECT_TRUE(run.standard.ate_m.has_value());
-  for (const Profile profile : {Profile::standard, Profile::paper}) {
-    const ProfileRun& half = profile == Profile::paper ? run.paper : run.standard;
+  EXPECT_TRUE(run.default_profile.ate_m.has_value());
+  for (const Profile profile : {Profile::default_profile, Profile::paper}) {
+    const ProfileRun& half = profile == Profile::paper ? run.paper : run.default_profile;
     const auto alone = poses_alone(profile, kScans);
     ASSERT_EQ(half.poses.size(), kScans);
     for (std::size_t k = 0; k < kScans; ++k) {
@@ -50,8 +50,8 @@ TEST(PairedRun, EndsWhenItIsTold) {
 
 TEST(PairedReport, WithoutTruthErrorsAreNull) {
   PairedRun run{.set = "drive", .beams = 16, .decode_ms = {1.0, 3.0}, .returns = {10.0, 20.0}};
-  run.standard.ground = {5.0, 7.0};
-  run.standard.status_counts = {1, 1, 0, 0};
+  run.default_profile.ground = {5.0, 7.0};
+  run.default_profile.status_counts = {1, 1, 0, 0};
   const auto json = nlohmann::json::parse(to_json({run}))["sets"][0];
   EXPECT_EQ(json["set"], "drive");
   EXPECT_EQ(json["scans"], 2);

@@ -9,7 +9,6 @@
 #include "tools/tool_config.hpp"
 
 #include <fmt/format.h>
-#include <opencv2/core.hpp>
 
 #include <memory>
 
@@ -49,7 +48,6 @@ void run_paper(const BenchOptions& options) {
                                        .odometry = config.odometry,
                                        .lengths_m = options.lengths_m,
                                        .most_scans = options.most_scans};
-  cv::setNumThreads(1);
   paper_bench::run_paper_bench(find_sets_with_truth(options.paper_paths), settings, options.out);
 }
 
@@ -85,7 +83,6 @@ void add_bench_command(CLI::App& app) {
   sub->callback([options, sub] {
     if (!sub->get_subcommands().empty()) return;
     if (options->paths.empty()) throw CLI::RequiredError("bench: DIR");
-    cv::setNumThreads(1);
     run_bench(*options);
   });
 }

@@ -29,8 +29,8 @@ constexpr std::array<Counter, 5> kCounters = {{{"edges", &ProfileRun::edges},
 
 /// Mean time of the paper's profile over that of the default one.
 double speed_up(const PairedRun& run) {
-  const double standard = statistics(run.standard.timer.total_ms()).mean;
-  return standard > 0.0 ? statistics(run.paper.timer.total_ms()).mean / standard : 0.0;
+  const double by_default = statistics(run.default_profile.timer.total_ms()).mean;
+  return by_default > 0.0 ? statistics(run.paper.timer.total_ms()).mean / by_default : 0.0;
 }
 
 std::string figures(const Statistics& s, int decimals) {
@@ -101,18 +101,19 @@ std::string to_text(const PairedRun& run) {
   text += line("decode", run.decode_ms, run.decode_ms, 3);
   for (int k = 0; k < kStageCount; ++k) {
     const auto stage = static_cast<Stage>(k);
-    text += line(to_string(stage), run.standard.timer.stage_ms(stage),
+    text += line(to_string(stage), run.default_profile.timer.stage_ms(stage),
                  run.paper.timer.stage_ms(stage), 3);
   }
-  text += line("odometry", run.standard.timer.total_ms(), run.paper.timer.total_ms(), 3);
+  text += line("odometry", run.default_profile.timer.total_ms(), run.paper.timer.total_ms(), 3);
   fmt::format_to(out, "  default is {:.1f} times as fast (means, {:.3f} and {:.3f} ms)\n",
-                 speed_up(run), statistics(run.standard.timer.total_ms()).mean,
+                 speed_up(run), statistics(run.default_profile.timer.total_ms()).mean,
                  statistics(run.paper.timer.total_ms()).mean);
   text += "a scan\n";
   for (const Counter& counter : kCounters) {
-    text += line(counter.name, run.standard.*counter.values, run.paper.*counter.values, 0);
+    text += line(counter.name, run.default_profile.*counter.values, run.paper.*counter.values, 0);
   }
-  text += "results\n" + errors_text("default", run.standard) + errors_text("paper", run.paper);
+  text +=
+      "results\n" + errors_text("default", run.default_profile) + errors_text("paper", run.paper);
   return text;
 }
 
@@ -124,7 +125,7 @@ std::string to_json(const std::vector<PairedRun>& runs) {
                     {"beams", run.beams},
                     {"returns", json_of(statistics(run.returns))},
                     {"decode_ms", json_of(statistics(run.decode_ms))},
-                    {"default", json_of(run.standard)},
+                    {"default", json_of(run.default_profile)},
                     {"paper", json_of(run.paper)},
                     {"speed_up", speed_up(run)}});
   }

@@ -48,7 +48,7 @@ void add_errors(const Trajectory& truth, ProfileRun& run) {
 PairedRun run_paired(const BenchmarkSet& set, const Config& config, std::uint64_t most_scans,
                      const KeepOn& keep_on) {
   const std::unique_ptr<ScanSource> source = open_scans(set.input, config.sensor);
-  Odometry standard(with_profile(config.odometry, Profile::standard));
+  Odometry by_default(with_profile(config.odometry, Profile::default_profile));
   Odometry paper(with_profile(config.odometry, Profile::paper));
   PairedRun run{.set = set.name};
   Scan scan;
@@ -58,9 +58,9 @@ PairedRun run_paired(const BenchmarkSet& set, const Config& config, std::uint64_
     run.decode_ms.push_back(static_cast<double>(thread_cpu_ns() - begin_ns) * 1e-6);
     run.returns.push_back(static_cast<double>(scan.returns.size()));
     run.beams = scan.beams.ring_count;
-    if (k % 2 == 0) take(standard, scan, run.standard);
+    if (k % 2 == 0) take(by_default, scan, run.default_profile);
     take(paper, scan, run.paper);
-    if (k % 2 == 1) take(standard, scan, run.standard);
+    if (k % 2 == 1) take(by_default, scan, run.default_profile);
     if (!keep_on(source->progress())) break;
   }
   if (!source->error().empty()) throw std::runtime_error(source->error());
@@ -68,7 +68,7 @@ PairedRun run_paired(const BenchmarkSet& set, const Config& config, std::uint64_
     throw std::runtime_error(fmt::format("{}: expected at least one scan, found none", set.input));
   }
   if (set.truth && run.returns.size() > 1) {
-    add_errors(*set.truth, run.standard);
+    add_errors(*set.truth, run.default_profile);
     add_errors(*set.truth, run.paper);
   }
   return run;

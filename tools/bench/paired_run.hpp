@@ -31,7 +31,7 @@ struct PairedRun {
   int beams = 0;
   std::vector<double> decode_ms;  ///< reading included; once a scan, for both
   std::vector<double> returns;
-  ProfileRun standard, paper;
+  ProfileRun default_profile, paper;
 };
 
 /// Called after every scan with the part of the set that is done; false ends the run there.

@@ -1,0 +1,108 @@
+#pragma once
+
+#include "core/feature.hpp"
+#include "core/scan.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+/// Features found in the image plane: the paper's idea, with exact returns and in metres.
+namespace lilo::core {
+
+/// Returns nearer or farther are not used.
+struct RangeLimits {
+  double min_m = 1.0, max_m = 100.0;
+};
+
+/// The spherical range image of a scan. Reused from scan to scan: no allocation after the first.
+/// Columns are contiguous, because a firing fills a column and neighbouring rings are compared.
+///
+/// Returns are projected (paper Eqs. 2-5), and every filled pixel is classified by the slope to its
+/// neighbours above and below: the vertical gradient of Eq. 7, in metres instead of grey levels.
+/// The first return in a pixel stays: the nearest would pull every range nearer by its noise.
+///
+/// A scan can be taken in parts, begin() -> add() -> ... -> finish(), while it is being measured.
+/// Columns that the sensor has passed are classified at once; should a return come for one of them
+/// after all, everything is classified again at the end. So the features are the same bits however
+/// the scan was divided.
+class FeatureImage {
+ public:
+  /// Of an image, and so of features. With 64 rings, 512 to 1024 columns give the same errors.
+  /// Fewer are worse, more cost time.
+  static constexpr int kMostPixels = 64 * 576;
+
+  FeatureImage(int columns, RangeLimits limits);
+  /// The width of the image for so many rings: `most`, or less where it would get too many pixels.
+  static int columns_for(int rings, int most);
+
+  void begin(const BeamTable& beams);
+  /// The next returns of the scan, in its order.
+  void add(std::span<const Return> returns);
+  /// The features, ordered column by column from straight behind, clockwise. `scan` gives the
+  /// times; all of its returns must have been added. Lives until the next begin().
+  std::vector<Feature>& finish(const Scan& scan);
+
+  /// A whole scan at once.
+  const std::vector<Feature>& build(const Scan& scan);
+
+ private:
+  struct Pixel {
+    float x_m, y_m, z_m;
+    std::int32_t t_ns;
+  };
+  using Filled = std::array<std::uint64_t, kMaxRings / 64>;  // a bit for each ring
+  /// A column as its own pixels see it, an array for each value. A firing may straddle two columns:
+  /// where this one got no return of a ring, that of the column before or after stands in if it is
+  /// below the horizon. Of the ground, that is; leaves and rails above hardly ever go on from
+  /// column to column.
+  struct Gathered {
+    std::array<float, kMaxRings> x_m, y_m, z_m;
+    std::array<float, kMaxRings> flat_m;  ///< from the sensor's axis; 0: empty
+    std::array<std::int32_t, kMaxRings> t_ns;
+    Filled own;
+  };
+  /// From each ring's pixel to the next's, if both are on one surface; else neither flat nor steep.
+  /// Index 2 is the way from ring 0 to ring 1, and there is room around.
+  struct Steps {
+    std::array<float, kMaxRings + 3> length2_m2;
+    std::array<std::int32_t, kMaxRings + 3> flat, steep;  ///< 1 or 0
+  };
+  struct Canvas;  // in feature_image_project.cpp
+  static float columns_per_rad(int columns);
+  void project(std::span<const Return> returns);
+  void project_crowded(const Canvas& canvas, std::span<const Return> returns);
+  void note(int column);
+  [[nodiscard]] int place_of(int column) const;
+  void classify_until(int place);
+  void classify_column(int column, std::vector<Feature>& out);
+  void gather(int column, Gathered& g) const;
+  /// `taken`: the rings that have a pixel.
+  void set_flat(const Filled& taken, Gathered& g) const;
+  void step_up(const Gathered& g);
+  void add_feature(const Gathered& g, std::size_t ring, std::vector<Feature>& out) const;
+  void set_reach(const Gathered& g, float to_lower2, float to_upper2, Feature& f) const;
+
+  int most_columns_;
+  int columns_ = 0;  // for these beams
+  int margin_ = 0;   // in columns
+  float nearest2_, farthest2_;
+  BeamTable beams_;
+  std::vector<Pixel> pixels_;   // valid where filled
+  std::vector<Filled> filled_;  // of every column; apart, because most returns only ask this
+  /// Between a ring and the next, which of the highest is the one below.
+  std::array<float, kMaxRings> gap_rad_{};
+  Steps steps_;  // of the column in hand
+  std::vector<Feature> features_;
+  std::vector<Feature> last_features_;  // of columns to the right of straight behind
+
+  // A column's place counts from `first_column_`, in the order in which the sensor passes them.
+  int first_column_ = -1;   // -1: no return yet
+  int front_ = 0;           // the farthest place before the seam that a return fell into
+  int classified_ = 0;      // places before this one are done
+  bool disturbed_ = false;  // and one of them got another return
+};
+
+}  // namespace lilo::core

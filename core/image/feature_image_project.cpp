@@ -1,0 +1,94 @@
+#include "core/image/feature_image.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <tuple>
+
+namespace lilo::core {
+
+/// A copy of what tells where a return goes, in registers whatever is written to the image.
+struct FeatureImage::Canvas {
+  Pixel* pixels;
+  Filled* filled;
+  std::uint32_t rows, columns;
+  float per_rad, nearest2, farthest2;
+
+  /// Columns begin straight behind and go clockwise.
+  [[nodiscard]] std::uint32_t column_of(const Return& r) const {
+    const auto column = static_cast<std::uint32_t>(
+        static_cast<std::int32_t>((std::numbers::pi_v<float> - r.azimuth_rad) * per_rad));
+    return column < columns ? column : 0;  // at the seam rounding reaches the last column's end
+  }
+  /// Of any ring, without a branch.
+  [[nodiscard]] std::size_t is_free(std::uint32_t ring, std::uint32_t column) const {
+    const std::uint64_t word = filled[column][ring / 64U % std::tuple_size_v<Filled>];
+    return static_cast<std::size_t>(~word >> (ring % 64U) & 1U);
+  }
+  /// False where the pixel is taken or the return out of range.
+  bool put(const Return& r, std::uint32_t column) const {
+    const std::uint32_t ring = r.ring;
+    if (ring >= rows) return false;
+    const std::uint64_t bit = std::uint64_t{1} << (ring % 64U);
+    std::uint64_t& word = filled[column][ring / 64U];
+    if ((word & bit) != 0) return false;
+    const float range2 = r.x_m * r.x_m + r.y_m * r.y_m + r.z_m * r.z_m;
+    if (!(range2 >= nearest2 && range2 <= farthest2)) return false;  // and NaN
+    word |= bit;
+    pixels[column * rows + ring] = {r.x_m, r.y_m, r.z_m, r.t_ns};
+    return true;
+  }
+};
+
+void FeatureImage::project(std::span<const Return> returns) {
+  const Canvas canvas{pixels_.data(),
+                      filled_.data(),
+                      static_cast<std::uint32_t>(beams_.ring_count),
+                      static_cast<std::uint32_t>(columns_),
+                      columns_per_rad(columns_),
+                      nearest2_,
+                      farthest2_};
+  if (columns_ < most_columns_) {
+    project_crowded(canvas, returns);
+    return;
+  }
+  for (const Return& r : returns) {
+    const std::uint32_t column = canvas.column_of(r);
+    if (canvas.put(r, column)) note(static_cast<int>(column));
+  }
+}
+
+/// Where there are more returns than pixels, a processor cannot foretell which ones are taken. So
+/// those that are free are gathered first, without a branch.
+void FeatureImage::project_crowded(const Canvas& canvas, std::span<const Return> returns) {
+  constexpr std::size_t kAtATime = 48;  // fewer than a firing has: hardly two are for one pixel
+  std::array<std::uint32_t, kAtATime> at, columns;
+  while (!returns.empty()) {
+    const auto some = returns.first(std::min(returns.size(), kAtATime));
+    returns = returns.subspan(some.size());
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      const std::uint32_t column = canvas.column_of(some[k]);
+      at[count] = static_cast<std::uint32_t>(k);
+      columns[count] = column;
+      count += canvas.is_free(some[k].ring, column);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      if (canvas.put(some[at[k]], columns[k])) note(static_cast<int>(columns[k]));
+    }
+  }
+}
+
+/// A return fell into an empty pixel of the column.
+void FeatureImage::note(int column) {
+  if (first_column_ < 0) first_column_ = (column + margin_) % columns_;
+  const int place = place_of(column);
+  if (place <= classified_ && classified_ > 0) disturbed_ = true;  // or looked at from beside
+  if (place < columns_ - 2 * margin_ && place > front_) front_ = place;
+}
+
+int FeatureImage::place_of(int column) const {
+  const int place = column - first_column_;
+  return place < 0 ? place + columns_ : place;
+}
+
+}  // namespace lilo::core

@@ -1,0 +1,108 @@
+#include "core/image/selection.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace lilo::core {
+
+Selection::Selection(int ground_goal, int structure_goal)
+    : goal_{ground_goal, structure_goal},
+      taken_(std::bit_ceil(static_cast<std::size_t>(ground_goal + structure_goal) * 4)),
+      mask_(taken_.size() - 1) {
+  chosen_.reserve(taken_.size() / 2);
+  picked_.reserve(FeatureImage::kMostPixels);
+}
+
+/// A step that visits all of `size` elements, one after the other far apart and evenly spread.
+std::size_t Selection::golden_stride(std::size_t size) {
+  constexpr double kGolden = 0.6180339887498949;
+  auto stride = static_cast<std::size_t>(kGolden * static_cast<double>(size)) | 1U;
+  while (std::gcd(stride, size) > 1) stride += 2;
+  return stride;
+}
+
+std::uint64_t Selection::voxel_of(const Feature& f, float per_m) {
+  constexpr float kOffset = 1 << 15;  // all are positive then, and to cut off is to round down
+  const auto part = [&](float v_m) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(v_m * per_m + kOffset)) & 0xFFFFU;
+  };
+  return 1U + (part(f.x_m) | part(f.y_m) << 16U | part(f.z_m) << 32U |
+               static_cast<std::uint64_t>(f.kind) << 48U);
+}
+
+bool Selection::take(std::uint64_t voxel) {
+  auto slot = static_cast<std::size_t>(voxel * 0x9E3779B97F4A7C15ULL >> 32U) & mask_;
+  for (; taken_[slot] != 0; slot = (slot + 1) & mask_) {
+    if (taken_[slot] == voxel) return false;
+  }
+  taken_[slot] = voxel;
+  return true;
+}
+
+const std::vector<Feature>& Selection::choose(const std::vector<Feature>& all) {
+  // Too small a voxel fills the goal before the turn is over, as after a scan that saw little. Too
+  // large a one leaves little of what there is, as in the first scan of a narrow place.
+  constexpr int kMostPasses = 8;
+  for (int pass = 0; pass < kMostPasses && !take_evenly(all); ++pass) {
+  }
+  return chosen_;
+}
+
+bool Selection::take_evenly(const std::vector<Feature>& all) {
+  std::fill(taken_.begin(), taken_.end(), 0);
+  chosen_.clear();
+  std::array<int, kKinds> count{}, offered{};
+  const std::array<float, kKinds> per_m{1.0F / voxel_m_[0], 1.0F / voxel_m_[1]};
+  bool done = true;
+  picked_.assign(all.size(), 0);
+  const std::size_t stride = golden_stride(all.size());
+  for (std::size_t n = 0, at = 0; n < all.size(); ++n, at = (at + stride) % all.size()) {
+    const Feature& f = all[at];
+    const auto kind = static_cast<std::size_t>(f.kind);
+    ++offered[kind];
+    if (count[kind] >= 2 * goal_[kind]) {
+      done = false;
+    } else if (take(voxel_of(f, per_m[kind]))) {
+      ++count[kind];
+      picked_[at] = 1;
+    }
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (picked_[k] != 0) chosen_.push_back(all[k]);
+  }
+  for (std::size_t k = 0; k < kKinds; ++k) {
+    // On surfaces the number goes with the inverse square of the voxel; 0.35 instead of 0.5 damps.
+    const float ratio = static_cast<float>(std::max(count[k], 1)) / static_cast<float>(goal_[k]);
+    const float before_m = voxel_m_[k];
+    voxel_m_[k] = std::clamp(voxel_m_[k] * std::pow(ratio, 0.35F), 0.05F, 5.0F);
+    const bool few = 2 * count[k] < std::min(goal_[k], offered[k]);
+    if (few && voxel_m_[k] < before_m) done = false;
+  }
+  return done;
+}
+
+void thin_out(const std::vector<Feature>& all, std::size_t most, std::vector<Feature>& fewer) {
+  constexpr std::uint32_t kGolden = 2654435769U;  // of 2^32: rings beside each other lie apart
+  const std::uint64_t whole = std::max(all.size(), most);
+  std::array<std::uint64_t, kMaxRings> owed{};  // to each ring, in parts of a feature
+  for (std::size_t ring = 0; ring < owed.size(); ++ring) {
+    owed[ring] = static_cast<std::uint32_t>(ring * kGolden) * whole >> 32U;
+  }
+  fewer.resize(most);
+  std::size_t n = 0;
+  for (const Feature& f : all) {
+    if (n == most) break;
+    // Which ones are due is not to be foretold either.
+    std::uint64_t& parts = owed[f.ring];
+    parts += most;
+    const bool due = parts >= whole;
+    parts -= due ? whole : 0;
+    fewer[n] = f;
+    n += static_cast<std::size_t>(due);
+  }
+  fewer.resize(n);
+}
+
+}  // namespace lilo::core

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/image/feature_image.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace lilo::core {
+
+/// Chooses the features to align: one a voxel, so that near and far surfaces count by their area
+/// and not by the density of the rays. The voxels of each kind follow the scene, to keep the
+/// numbers of features near their goals. Features are visited spread over the image: the first of a
+/// voxel in azimuth order would always be the one on the same side of it, and bend the path.
+/// No allocation after construction.
+class Selection {
+ public:
+  Selection(int ground_goal, int structure_goal);
+
+  /// The chosen features, in the image's order; the result lives until the next call.
+  const std::vector<Feature>& choose(const std::vector<Feature>& all);
+
+  /// More are never chosen.
+  [[nodiscard]] std::size_t most() const { return chosen_.capacity(); }
+
+ private:
+  static constexpr int kKinds = 2;
+  [[nodiscard]] static std::size_t golden_stride(std::size_t size);
+  [[nodiscard]] static std::uint64_t voxel_of(const Feature& f, float per_m);
+  /// False when a goal was reached twice over before the end, or not even half though there is
+  /// more. Adapts the voxels in any case.
+  bool take_evenly(const std::vector<Feature>& all);
+  bool take(std::uint64_t voxel);
+
+  std::array<int, kKinds> goal_;
+  std::array<float, kKinds> voxel_m_{1.0F, 0.5F};
+  std::vector<std::uint64_t> taken_;  // hash set of voxels, 0: empty
+  std::size_t mask_;
+  std::vector<std::uint8_t> picked_;  // of each feature
+  std::vector<Feature> chosen_;
+};
+
+/// `most` of them at most, evenly along each ring. In the image's order every second feature would
+/// be every second ring, wherever columns are filled alike.
+void thin_out(const std::vector<Feature>& all, std::size_t most, std::vector<Feature>& fewer);
+
+}  // namespace lilo::core

@@ -1,0 +1,177 @@
+#include "core/map/cell_map.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lilo::core {
+namespace {
+
+constexpr float kMinCount = 6.0F;     // points a window needs
+constexpr float kFewPoints_m = 0.1F;  // 1 sigma of what one point says of the surface around it
+// A direction informs if its spread (1 sigma) stays under this part of the window's width; an even
+// filling has 0.29.
+constexpr float kThin = 0.065F;
+constexpr std::uint32_t kYoung = 4;  // keyframes
+constexpr std::size_t kSweepShare = 64;
+
+}  // namespace
+
+CellMap::CellMap(const CellMapConfig& config)
+    : config_(config),
+      per_m_(1.0 / static_cast<double>(config.cell_m)),
+      kept_(1.0F - 1.0F / config.memory),
+      table_(static_cast<std::size_t>(config.capacity)) {
+  const auto capacity = static_cast<std::size_t>(config.capacity);
+  cells_.reserve(capacity);
+  sums_.reserve(capacity);
+  free_.reserve(capacity);
+}
+
+std::int32_t CellMap::make(const Place& place) {
+  if (used_ == config_.capacity) {
+    ++refused_;
+    return kNone;
+  }
+  auto at = static_cast<std::int32_t>(cells_.size());
+  if (free_.empty()) {
+    cells_.emplace_back();
+    sums_.emplace_back();
+  } else {
+    at = free_.back();
+    free_.pop_back();
+    cells_[static_cast<std::size_t>(at)] = Cell{};
+    sums_[static_cast<std::size_t>(at)] = Moments{};
+  }
+  table_.insert(place.home, CellTable::tag_of(place.index), at);
+  ++used_;
+  cells_[static_cast<std::size_t>(at)].index = place.index;
+  cells_[static_cast<std::size_t>(at)].born = keyframe_;
+  return at;
+}
+
+std::size_t CellMap::neighbours_of(const CellIndex& i, Neighbours& found) const {
+  std::array<std::size_t, Neighbours{}.size()> homes;
+  std::array<std::uint32_t, Neighbours{}.size()> tags;
+  std::size_t n = 0;
+  for (std::int32_t x = -1; x <= 1; ++x) {
+    for (std::int32_t y = -1; y <= 1; ++y) {
+      const CellIndex lowest{i.x + x, i.y + y, i.z - 1};
+      std::size_t home = table_.home_of(lowest);
+      std::uint32_t tag = CellTable::tag_of(lowest);
+      for (int level = 0; level < 3; ++level, ++n) {
+        homes[n] = home;
+        tags[n] = tag;
+        table_.prefetch(home);
+        home = table_.home_above(home);
+        tag = CellTable::tag_above(tag);
+      }
+    }
+  }
+  const std::array<float, 3> across_m{-config_.cell_m, 0.0F, config_.cell_m};
+  std::size_t count = 0;
+  n = 0;
+  for (const float x_m : across_m) {
+    for (const float y_m : across_m) {
+      for (const float z_m : across_m) {
+        const std::int32_t at = table_.find(homes[n], tags[n]);
+        ++n;
+        if (at == kNone) continue;
+        prefetch_sums(at);
+        found[count++] = {at, x_m, y_m, z_m};
+      }
+    }
+  }
+  return count;
+}
+
+Moments CellMap::moments_around(const CellIndex& i) const {
+  Neighbours neighbours;
+  const std::size_t n = neighbours_of(i, neighbours);
+  Moments sums{};
+  for (std::size_t k = 0; k < n; ++k) {
+    const Neighbour& o = neighbours[k];
+    const Moments& one = sums_[static_cast<std::size_t>(o.at)];
+    const Eigen::Vector3f p = points_of(one);
+    const Eigen::Vector3f q = p + count_of(one) * Eigen::Vector3f(o.x_m, o.y_m, o.z_m);
+    // The squares: o p' + p o' + count o o'
+    const Moments moved{count_of(one),
+                        q.x(),
+                        q.y(),
+                        q.z(),
+                        one[4] + o.x_m * (p.x() + q.x()),
+                        one[5] + (o.x_m * q.y() + o.y_m * p.x()),
+                        one[6] + (o.x_m * q.z() + o.z_m * p.x()),
+                        one[7] + o.y_m * (p.y() + q.y()),
+                        one[8] + (o.y_m * q.z() + o.z_m * p.y()),
+                        one[9] + o.z_m * (p.z() + q.z())};
+    for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += moved[m];
+  }
+  return sums;
+}
+
+void CellMap::fit(Cell& cell) const {
+  const std::uint32_t age = keyframe_ - cell.born;
+  cell.refit_at = keyframe_ + (age < kYoung ? 1 : std::max(6U, age / 2));
+  cell.information.setZero();
+  const Moments sums = moments_around(cell.index);
+  const float count = count_of(sums);
+  if (count < kMinCount) return;
+  cell.mean_m = points_of(sums) / count;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(matrix_of<float>(squares_of(sums) / count - outer(cell.mean_m)));
+  const float thin_m = kThin * 3.0F * config_.cell_m;
+  const float doubt = config_.noise_m * config_.noise_m + kFewPoints_m * kFewPoints_m / count;
+  // Thin in two directions, a strip of ground may lean any way about its length.
+  constexpr float kUpright = 0.7F;  // cosine
+  if (config_.level && (solver.eigenvalues()[1] < thin_m * thin_m ||
+                        std::abs(solver.eigenvectors()(2, 0)) < kUpright)) {
+    return;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const float variance = std::max(solver.eigenvalues()[k], 0.0F) + doubt;
+    const float weight = std::max(0.0F, 1.0F / variance - 1.0F / (thin_m * thin_m));
+    cell.information += weight * outer(solver.eigenvectors().col(k));
+  }
+}
+
+void CellMap::clear() {
+  for (const Cell& cell : cells_) table_.clear_from(table_.home_of(cell.index));
+  cells_.clear();
+  sums_.clear();
+  free_.clear();
+  used_ = 0;
+}
+
+void CellMap::remove(std::size_t slot) {
+  free_.push_back(table_.slots()[slot].at);
+  --used_;
+  table_.remove(slot, [this](std::int32_t at) {
+    return table_.home_of(cells_[static_cast<std::size_t>(at)].index);
+  });
+}
+
+void CellMap::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
+  const std::vector<CellTable::Slot>& slots = table_.slots();
+  const std::size_t share = slots.size() / kSweepShare;
+  const CellIndex center = index_of(center_m);
+  const std::uint32_t center_tag = CellTable::tag_of(center);
+  const Eigen::Vector3d rest_m = center_of(center) - center_m;
+  const auto cell_m = static_cast<double>(config_.cell_m);
+  for (std::size_t n = 0; n < share; ++n) {
+    // The tag tells where a cell is: to read each of them would take most of the time.
+    if (slots[sweep_].at != kNone) {
+      const CellIndex from = CellTable::between(center_tag, slots[sweep_].tag);
+      const Eigen::Vector3d from_m = cell_m * Eigen::Vector3d(from.x, from.y, from.z) + rest_m;
+      if (from_m.squaredNorm() > radius_m * radius_m) {
+        remove(sweep_);
+        continue;  // another cell may have moved into this slot
+      }
+    }
+    sweep_ = table_.after(sweep_);
+  }
+}
+
+}  // namespace lilo::core

@@ -1,0 +1,200 @@
+#pragma once
+
+#include "core/map/cell_table.hpp"
+#include "core/map/moments.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+/// The local map: points summed up in small cubic cells of a hash table.
+namespace lilo::core {
+
+/// What the map says about a point near one cell.
+struct Match {
+  Eigen::Vector3f from_mean_m;             ///< from the mean of the map points around to the point
+  const Symmetric* information = nullptr;  ///< 1/m^2; nullptr: the map knows too little there
+};
+
+struct CellMapConfig {
+  float cell_m = 0.5F;
+  float noise_m = 0.02F;  ///< 1 sigma of a return across a surface
+  /// Ground: informs of its height and slope only, and not at all where no more than a strip of it
+  /// was seen. Where it ends, before a wall or at one ring, moves with the sensor and would hold it
+  /// where it is; and of a strip, the foot of the wall would make a slope.
+  bool level = false;
+  int capacity = 100000;  ///< cells; beyond it new ones are refused and counted
+  /// Points a cell remembers; older ones fade. What is seen of a thing moves as the sensor passes
+  /// it: held against its oldest views, a scan is dragged back, and every path comes out too short.
+  float memory = 30.0F;
+};
+
+/// A cell's distribution is the Gaussian of the points in the 3x3x3 cells around it. It informs
+/// only along directions in which the points are thin against the window: a wall along its normal,
+/// a trunk across its axis, foliage hardly at all. What fills its window evenly would only hold the
+/// scan where it is (and drag it towards what was seen first). Memory is reserved at construction.
+/// Not thread-safe.
+class CellMap {
+ public:
+  static constexpr std::int32_t kNone = CellTable::kNone;
+  /// A cell's place in the table, whether it is there or not.
+  struct Place {
+    CellIndex index{};
+    std::int32_t last = kNone;  ///< the cell that it was before, if a point has hardly moved
+    std::size_t home = 0;       ///< in the table; only where there is no last
+  };
+  /// Vector to the next sampled point on the same surface. The surface between the two was not seen
+  /// and counts as spread; without it a single ring on the ground looks like a plane through its
+  /// own rays, blind to pitch ("cone lock").
+  struct Reach {
+    explicit Reach(const Eigen::Vector3f& reach_m)
+        : square_m2(reach_m.squaredNorm()), outer_m2(outer(reach_m)) {}
+    float square_m2;
+    Symmetric outer_m2;
+  };
+
+  explicit CellMap(const CellMapConfig& config);
+
+  /// Adds a point of the odometry frame.
+  void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
+    const Place place = place_of(point_m);
+    add(open(place), place, point_m, Reach(reach_m));
+  }
+
+  /// The distribution around a point. Fits are cached: a young cell is fitted again after every
+  /// end_keyframe(), an older one at every sixth at most, and the older the less often.
+  Match find(const Eigen::Vector3d& point_m) { return match(cell_at(place_of(point_m)), point_m); }
+
+  /// find() and insert() in steps. Each but the last asks the memory for what the next one reads;
+  /// who takes them for many points in turn does not wait for it.
+  /// `last`: what cell_at() answered for it before, the map being the same.
+  [[nodiscard]] Place place_of(const Eigen::Vector3d& point_m, std::int32_t last = kNone) const {
+    Place place{index_of(point_m), last};
+    if (last != kNone) {
+      __builtin_prefetch(&cells_[static_cast<std::size_t>(last)]);
+    } else {
+      place.home = table_.home_of(place.index);
+      table_.prefetch(place.home);
+    }
+    return place;
+  }
+  [[nodiscard]] std::int32_t cell_at(const Place& place) const {
+    std::size_t home = place.home;
+    if (place.last != kNone) {
+      if (cells_[static_cast<std::size_t>(place.last)].index == place.index) return place.last;
+      home = table_.home_of(place.index);
+    }
+    const std::int32_t at = table_.find(home, CellTable::tag_of(place.index));
+    if (at != kNone) __builtin_prefetch(&cells_[static_cast<std::size_t>(at)]);
+    return at;
+  }
+  Match match(std::int32_t at, const Eigen::Vector3d& point_m) {
+    if (at == kNone) return {};
+    Cell& cell = cells_[static_cast<std::size_t>(at)];
+    if (keyframe_ >= cell.refit_at) fit(cell);
+    if (cell.information.isZero(0.0F)) return {};
+    return {(point_m - center_of(cell.index)).cast<float>() - cell.mean_m, &cell.information};
+  }
+  /// The cell there, made if missing; kNone where there is no room.
+  std::int32_t open(const Place& place) {
+    const std::int32_t at = table_.find(place.home, CellTable::tag_of(place.index));
+    if (at == kNone) return make(place);
+    prefetch_sums(at);
+    return at;
+  }
+  void add(std::int32_t at, const Place& place, const Eigen::Vector3d& point_m,
+           const Reach& reach) {
+    if (at == kNone) return;
+    Moments& sums = sums_[static_cast<std::size_t>(at)];
+    // Seen through a window of three cells, a longer reach is just "all of it".
+    const float window_m2 = 9.0F * config_.cell_m * config_.cell_m;
+    const float spread = reach.square_m2 > window_m2 ? window_m2 / (12.0F * reach.square_m2)
+                                                     : 1.0F / 12.0F;  // if even
+    const Eigen::Vector3f p = (point_m - center_of(place.index)).cast<float>();
+    const float kept = count_of(sums) >= config_.memory ? kept_ : 1.0F;
+    add_to(sums, kept, moments_of(p, spread, reach.outer_m2));
+  }
+
+  void end_keyframe() { ++keyframe_; }
+
+  /// Forgets everything, keeps the memory.
+  void clear();
+
+  /// Forgets cells farther than `radius_m` from `center_m`. Every call looks at the same small
+  /// share of the table, so that no single scan pays for it.
+  void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
+
+  /// Calls `visit` with the mean of every cell's own points (m), in no particular order.
+  template <typename Visit>
+  void for_each_mean(const Visit& visit) const {
+    for (const CellTable::Slot& slot : table_.slots()) {
+      if (slot.at == kNone) continue;
+      const auto at = static_cast<std::size_t>(slot.at);
+      const Eigen::Vector3d own_m = (points_of(sums_[at]) / count_of(sums_[at])).cast<double>();
+      visit(center_of(cells_[at].index) + own_m);
+    }
+  }
+
+  [[nodiscard]] int size() const { return used_; }
+  [[nodiscard]] std::uint64_t refused() const { return refused_; }
+
+ private:
+  /// What find() reads: one cache line.
+  struct alignas(64) Cell {
+    CellIndex index{};
+    std::uint32_t born = 0;                            // keyframe
+    std::uint32_t refit_at = 0;                        // keyframe from which the fit is out of date
+    Eigen::Vector3f mean_m = Eigen::Vector3f::Zero();  // from the cell's centre
+    Symmetric information = Symmetric::Zero();         // zero: too few points
+  };
+  struct Neighbour {
+    std::int32_t at;
+    float x_m, y_m, z_m;  // from the one in the middle
+  };
+  using Neighbours = std::array<Neighbour, 27>;
+
+  [[nodiscard]] CellIndex index_of(const Eigen::Vector3d& p) const {
+    return {floor_of(p.x() * per_m_), floor_of(p.y() * per_m_), floor_of(p.z() * per_m_)};
+  }
+  [[nodiscard]] Eigen::Vector3d center_of(const CellIndex& i) const {
+    return static_cast<double>(config_.cell_m) * Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5);
+  }
+  /// std::floor() is a call where the processor need not have SSE 4.1. What lies beyond a billion
+  /// cells, or is nan, is counted as there.
+  static std::int32_t floor_of(double v) {
+    constexpr std::uint32_t kAbove = 1U << 30U;  // zero: from there, to cut off is to round down
+    constexpr double kFar = kAbove - 2U;
+    v = v > -kFar ? v : -kFar;
+    v = v < kFar ? v : kFar;
+    return static_cast<std::int32_t>(
+        static_cast<std::uint32_t>(static_cast<std::int32_t>(v + kAbove)) - kAbove);
+  }
+  /// Mostly they lie across two cache lines.
+  void prefetch_sums(std::int32_t at) const {
+    const Moments& sums = sums_[static_cast<std::size_t>(at)];
+    __builtin_prefetch(&sums.front());
+    __builtin_prefetch(&sums.back());
+  }
+  std::int32_t make(const Place& place);
+  /// Of the 27 cells around and including one, those that are there; how many.
+  std::size_t neighbours_of(const CellIndex& i, Neighbours& found) const;
+  [[nodiscard]] Moments moments_around(const CellIndex& i) const;
+  void fit(Cell& cell) const;
+  void remove(std::size_t slot);
+
+  CellMapConfig config_;
+  double per_m_;
+  float kept_;  // of what a cell remembers, when one more point comes
+  CellTable table_;
+  std::vector<Cell> cells_;
+  std::vector<Moments> sums_;  // what insert() sums, from the cell's centre
+  std::vector<std::int32_t> free_;
+  std::size_t sweep_ = 0;
+  std::uint32_t keyframe_ = 1;
+  int used_ = 0;
+  std::uint64_t refused_ = 0;
+};
+
+}  // namespace lilo::core

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+/// Where the map has its cells: a hash table from a cell's place to its number.
+namespace lilo::core {
+
+/// A cubic cell of space, counted from the origin.
+struct CellIndex {
+  std::int32_t x, y, z;
+  bool operator==(const CellIndex&) const = default;
+};
+
+/// Open addressing, linear probing, no tombstones. An entry knows its cell by a tag: the index, cut
+/// to what differs between cells of one window of 2048 x 2048 x 1024 cells, so that a cell need not
+/// be read to know that it is another. Memory is reserved at construction. Not thread-safe.
+class CellTable {
+ public:
+  static constexpr std::int32_t kNone = -1;
+  /// Height of the window, its smallest side. A cell so far above the middle that the way round the
+  /// window is the shorter one seems to lie below it, this height less its own distance away.
+  /// Whoever forgets what is farther than a radius forgets that cell too if the radius and the
+  /// cell's distance together are less than the height; one cell of each is rounding.
+  static constexpr std::int32_t kLevels = 1024;
+  static constexpr std::int32_t kSafeLevels = kLevels - 2;
+
+  struct Slot {
+    std::int32_t at = kNone;  ///< the cell's number; kNone: empty
+    std::uint32_t tag = 0;
+  };
+
+  /// At least half of the slots stay empty.
+  explicit CellTable(std::size_t capacity)
+      : mask_(std::bit_ceil(2 * capacity) - 1), slots_(mask_ + 1) {}
+
+  /// Where the search for a cell begins. 4 x 4 cells of a level lie side by side, and after them
+  /// those above: who looks around a cell, or for features beside each other, mostly reads the same
+  /// few cache lines.
+  [[nodiscard]] std::size_t home_of(const CellIndex& i) const {
+    constexpr std::int32_t kInside = (1 << kBlockBits) - 1;
+    const auto block = [](std::int32_t v) {
+      return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v >> kBlockBits));
+    };
+    std::uint64_t h = block(i.x) * 0x9E3779B97F4A7C15ULL ^ block(i.y) * 0xC2B2AE3D27D4EB4FULL;
+    h ^= h >> 29U;
+    h = h * 0xBF58476D1CE4E5B9ULL >> 20U;
+    const auto inside = static_cast<std::uint32_t>((i.y & kInside) << kBlockBits | (i.x & kInside));
+    return static_cast<std::size_t>((h + static_cast<std::uint32_t>(i.z)) * kLevelSlots + inside) &
+           mask_;
+  }
+  [[nodiscard]] static std::uint32_t tag_of(const CellIndex& i) {
+    constexpr std::uint32_t kAcross = (1U << kAcrossBits) - 1U;
+    return (static_cast<std::uint32_t>(i.x) & kAcross) |
+           (static_cast<std::uint32_t>(i.y) & kAcross) << kAcrossBits |
+           static_cast<std::uint32_t>(i.z) << (2 * kAcrossBits);
+  }
+  /// Both, of the cell above.
+  [[nodiscard]] std::size_t home_above(std::size_t home) const {
+    return (home + kLevelSlots) & mask_;
+  }
+  [[nodiscard]] static std::uint32_t tag_above(std::uint32_t tag) {
+    return tag + (1U << (2 * kAcrossBits));
+  }
+  /// From one cell to another, the short way round the tags' window.
+  [[nodiscard]] static CellIndex between(std::uint32_t from_tag, std::uint32_t to_tag) {
+    const auto part = [&](int low, int bits) {
+      const std::uint32_t cut = ((to_tag >> low) - (from_tag >> low)) << (32 - bits);
+      return static_cast<std::int32_t>(cut) >> (32 - bits);
+    };
+    return {part(0, kAcrossBits), part(kAcrossBits, kAcrossBits),
+            part(2 * kAcrossBits, kLevelBits)};
+  }
+
+  /// Asks the memory for what find() will read.
+  void prefetch(std::size_t home) const { __builtin_prefetch(&slots_[home]); }
+  /// The cell's number, or kNone.
+  [[nodiscard]] std::int32_t find(std::size_t home, std::uint32_t tag) const {
+    return slots_[slot_from(home, tag)].at;
+  }
+  /// Of a cell that is not there.
+  void insert(std::size_t home, std::uint32_t tag, std::int32_t at) {
+    slots_[slot_from(home, tag)] = {at, tag};
+  }
+  /// Empties a slot. Others may move into it: `home_of_cell(at)` tells where a cell's search
+  /// begins.
+  template <typename HomeOfCell>
+  void remove(std::size_t slot, const HomeOfCell& home_of_cell) {
+    std::size_t hole = slot;
+    for (std::size_t next = (hole + 1) & mask_; slots_[next].at != kNone;
+         next = (next + 1) & mask_) {
+      const std::size_t home = home_of_cell(slots_[next].at);
+      if (((next - home) & mask_) < ((next - hole) & mask_)) continue;
+      slots_[hole] = slots_[next];
+      hole = next;
+    }
+    slots_[hole] = Slot{};
+  }
+  /// Empties the slots from there to the next empty one. Done from the home of every cell there is,
+  /// in any order, it empties the table: what it leaves of a row of slots is the beginning, and a
+  /// cell that is still in it has its home there too. Where cells are few, that is far less than
+  /// the whole table.
+  void clear_from(std::size_t home) {
+    for (; slots_[home].at != kNone; home = after(home)) slots_[home] = Slot{};
+  }
+
+  [[nodiscard]] const std::vector<Slot>& slots() const { return slots_; }
+  [[nodiscard]] std::size_t after(std::size_t slot) const { return (slot + 1) & mask_; }
+
+ private:
+  // Of a tag, from the lowest: x, y, and how high the cell lies.
+  static constexpr int kAcrossBits = 11, kLevelBits = 10;
+  static_assert(kLevels == 1 << kLevelBits && kLevelBits < kAcrossBits);
+  // How many cells lie side by side.
+  static constexpr int kBlockBits = 2;
+  static constexpr std::size_t kLevelSlots = 1U << (2 * kBlockBits);
+
+  /// The slot that holds it, or else the first empty one.
+  [[nodiscard]] std::size_t slot_from(std::size_t home, std::uint32_t tag) const {
+    while (slots_[home].at != kNone && slots_[home].tag != tag) home = (home + 1) & mask_;
+    return home;
+  }
+
+  std::size_t mask_;
+  std::vector<Slot> slots_;
+};
+
+}  // namespace lilo::core

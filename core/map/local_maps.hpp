@@ -1,0 +1,65 @@
+#pragma once
+
+#include "core/image/feature_image.hpp"
+#include "core/map/cell_map.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lilo::core {
+
+/// The local map: cells of several sizes, of ground and of structure apart. A feature is matched at
+/// the finest level that knows enough of its surroundings.
+///
+/// Memory is reserved at construction. Not thread-safe.
+class LocalMaps {
+ public:
+  /// Half cells, cells and coarse cells. Half cells are used where the surroundings are narrow
+  /// (rooms, stairs, the inside of a garage): over three whole ones walls, doors and furniture blur
+  /// into one another.
+  static constexpr std::size_t kLevels = 3;
+  static constexpr std::size_t kNarrow = 0, kUsual = 1, kCoarse = 2;
+  using PerLevel = std::array<std::int32_t, kLevels>;
+  static constexpr PerLevel kNoCells{CellMap::kNone, CellMap::kNone, CellMap::kNone};
+
+  /// `configs`: of a level's ground map, then of its structure map.
+  explicit LocalMaps(const std::array<std::array<CellMapConfig, 2>, kLevels>& configs);
+
+  [[nodiscard]] CellMap& at(std::size_t level, FeatureKind kind) {
+    return levels_[level][static_cast<std::size_t>(kind)];
+  }
+  [[nodiscard]] const CellMap& at(std::size_t level, FeatureKind kind) const {
+    return levels_[level][static_cast<std::size_t>(kind)];
+  }
+
+  /// Adds features, their points and reaches in the odometry frame, to `finest` and all coarser
+  /// levels.
+  struct Point {
+    Eigen::Vector3d point_m;
+    Eigen::Vector3f reach_m;
+    FeatureKind kind;
+  };
+  void insert(std::span<const Point> points, std::size_t finest);
+
+  void end_keyframe();
+  /// Forgets cells farther than `radius_m` from `center_m`, half cells much nearer.
+  void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
+  void clear();
+  [[nodiscard]] int size() const;               ///< cells
+  [[nodiscard]] std::uint64_t refused() const;  ///< points that found no room
+  /// The mean of every cell of the usual size (m, odometry frame), in no particular order.
+  template <typename Visit>
+  void for_each_mean(const Visit& visit) const {
+    for (const CellMap& map : levels_[kUsual]) map.for_each_mean(visit);
+  }
+
+ private:
+  std::array<std::vector<CellMap>, kLevels> levels_;  // by FeatureKind
+};
+
+}  // namespace lilo::core

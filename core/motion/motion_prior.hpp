@@ -1,0 +1,58 @@
+#pragma once
+
+#include "core/motion/trajectory.hpp"
+#include "core/pose.hpp"
+
+#include <Eigen/Core>
+
+/// What is believed of a scan's motion before its returns are looked at: that it goes on from the
+/// last scan's, with white noise on acceleration (Barfoot, State Estimation for Robotics, ch. 11).
+namespace lilo::core {
+
+/// J'OJ over all knots.
+using NormalMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxUnknowns, kMaxUnknowns>;
+
+struct Prior {
+  Pose T_begin;
+  Twist twist;
+  double span_s = 0.1;
+  int segments = 1;                ///< of the trajectory, up to kMaxSegments
+  Knot begin_mean = Knot::Zero();  ///< of the first knot
+  KnotInformation begin_information = KnotInformation::Identity();
+  /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
+  Vector6d acceleration_density = Vector6d::Ones();
+};
+
+/// Roll and pitch share their process noise, and so do the two axes of the ground plane; yaw and
+/// height have their own. Every axis (rotation, translation) gets the mean over those it shares
+/// with.
+Vector6d mean_by_kind(const Vector6d& of_axes);
+
+/// Adds the prior to the normal equations H step = b of the deviation `x`.
+void add_prior(const Prior& prior, const Unknowns& x, NormalMatrix& H, Unknowns& b);
+
+/// Normalised innovation squared of the motion `x`: how far it departs from a constant velocity, as
+/// a mean square in sigmas of the prior, the same for all axes of a kind. 1 where the prior is
+/// right, or less: residuals count for less than they say.
+Vector6d normalised_innovation(const Prior& prior, const Unknowns& x);
+
+/// The prior with its process noise inflated until such an innovation is no more than expected.
+/// That is a prior with heavy tails: a motion that it did not expect is followed within the same
+/// scan.
+Prior inflated(Prior prior, const Vector6d& innovation);
+
+/// Information of the change between two knots `dt_s` apart under white noise on acceleration:
+/// inverse of Q = [dt^3/3 Qc, dt^2/2 Qc; dt^2/2 Qc, dt Qc].
+KnotInformation process_information(const Vector6d& acceleration_density, double dt_s);
+
+/// How many segments of a span leave a motion of such a process noise no more than 1 mrad, 1 sigma,
+/// between its knots: between two that are known, white noise of density q on acceleration leaves a
+/// variance of q dt^3 / 192 in the middle. At least `least`, at most kMaxSegments.
+int segments_for(const Vector6d& acceleration_density, double span_s, int least);
+
+/// The information of a knot left after `dt_s` without data.
+KnotInformation propagated(const KnotInformation& information, const Vector6d& acceleration_density,
+                           double dt_s);
+
+}  // namespace lilo::core

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/motion/motion_prior.hpp"
+
+namespace lilo::core {
+
+/// The process noise of the motion, estimated on the way: power densities of the acceleration's
+/// white noise, adapted to the measured motion (Mehra, On the identification of variances and
+/// adaptive Kalman filtering, 1970; Barfoot, State Estimation for Robotics, ch. 11).
+///
+/// Under white noise of density q on acceleration, the mean velocities over two adjacent intervals
+/// of length T differ by a variance of 2/3 q T. The intervals run from the middle of one scan to
+/// the middle of the next: the middle is held by returns from all around, the end by those of one
+/// side only, and what misleads those misleads the beginning of the next scan, which looks the same
+/// way, as well. So the motion within a scan gets the freedom that the motion from scan to scan
+/// asks for: none on a smooth road, much on a shaking mast.
+///
+/// Not thread-safe; no allocation.
+class ProcessNoise {
+ public:
+  /// `nominal`: density of each axis, rotation (rad^2/s^3), then translation (m^2/s^3). The
+  /// estimate begins there and never falls below.
+  explicit ProcessNoise(const Vector6d& nominal) : nominal_(nominal), density_(nominal) {}
+
+  /// The pose in the middle of a scan that was aligned, and the instant of it. `variance`: of the
+  /// pose by the scan's returns alone (rad^2, m^2). It makes velocities differ as well, and along a
+  /// tunnel is all that does. Where it is not finite the scan told nothing, and the estimate stays.
+  void observe(const Pose& T_middle, std::int64_t stamp_ns, const Vector6d& variance);
+  /// What comes next does not continue what was observed.
+  void interrupt() { observed_ = 0; }
+
+  [[nodiscard]] const Vector6d& density() const { return density_; }
+
+ private:
+  Vector6d nominal_, density_;
+  int observed_ = 0;  // poses on end, up to two
+  Pose T_middle_;
+  std::int64_t stamp_ns_ = 0;
+  Vector6d velocity_ = Vector6d::Zero();  // over the last interval: rotation, translation
+  double interval_s_ = 0.0;
+};
+
+}  // namespace lilo::core

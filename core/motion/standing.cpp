@@ -1,0 +1,57 @@
+#include "core/motion/standing.hpp"
+
+namespace lilo::core {
+namespace {
+
+constexpr double kStill_mps = 0.1, kStill_radps = 0.1;
+constexpr int kStillScans = 5;       // on end: it stands
+constexpr double kAway_m = 0.1;      // it has set off
+constexpr double kPlace_m = 0.005;   // 1 sigma
+constexpr double kSetOff_mps = 0.3;  // 1 sigma: it may set off at any time
+constexpr double kAsWell = 0.95;     // of what fits from the prediction
+
+}  // namespace
+
+void Standing::begin(const Pose& T_odom_sensor) {
+  T_odom_sensor_ = T_odom_sensor;
+  stands_ = true;
+}
+
+void Standing::end() {
+  stands_ = false;
+  still_scans_ = 0;
+}
+
+void Standing::observe(const Pose& T_odom_sensor, const Twist& twist) {
+  if (stands_) {
+    if ((T_odom_sensor.translation_m - T_odom_sensor_.translation_m).norm() > kAway_m) end();
+    return;
+  }
+  const bool still =
+      twist.linear_mps.norm() < kStill_mps && twist.angular_radps.norm() < kStill_radps;
+  still_scans_ = still ? still_scans_ + 1 : 0;
+  if (still_scans_ >= kStillScans) begin(T_odom_sensor);
+}
+
+Prior Standing::hypothesis(Prior prior) const {
+  constexpr int kTranslation = 3, kVelocity = 9;  // of a knot: rotation, translation, rates of both
+  prior.T_begin.translation_m = T_odom_sensor_.translation_m;
+  prior.twist.linear_mps.setZero();
+  prior.begin_mean.setZero();
+  const auto believe = [&](int first, double sigma) {
+    for (int k = first; k < first + 3; ++k) {
+      prior.begin_information.row(k).setZero();
+      prior.begin_information.col(k).setZero();
+      prior.begin_information(k, k) = 1.0 / (sigma * sigma);
+    }
+  };
+  believe(kTranslation, kPlace_m);
+  believe(kVelocity, kSetOff_mps);
+  return prior;
+}
+
+bool fits_as_well(double standing_inliers, double moving_inliers) {
+  return standing_inliers > kAsWell * moving_inliers;
+}
+
+}  // namespace lilo::core

@@ -1,0 +1,219 @@
+#include "core/registration/solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace lilo::core {
+namespace {
+
+// Far from the solution residuals are larger than noise and what moves: a wide kernel first, then
+// the tight one (graduated non-convexity; Yang et al., RA-L 2020).
+constexpr float kCoarseKernels = 4.0F;
+
+/// Information of the last knot when the others are not asked: the Schur complement.
+KnotInformation marginal_of_last(const NormalMatrix& H) {
+  const auto n = H.rows() - kKnotSize;
+  const NormalMatrix rest = H.topLeftCorner(n, n);
+  const NormalMatrix cross = H.topRightCorner(n, kKnotSize);
+  return H.bottomRightCorner<kKnotSize, kKnotSize>() - cross.transpose() * rest.ldlt().solve(cross);
+}
+
+/// J'OJ and -J'Or of a bin's residuals, by rotation and translation.
+std::pair<Matrix6d, Vector6d> normal_equations(const ResidualSums& sums) {
+  Matrix6d H;
+  H.topLeftCorner<3, 3>() = matrix_of<double>(sums.head<6>());
+  for (int row = 0; row < 3; ++row) {
+    H.block<1, 3>(row, 3) = sums.segment<3>(6 + 3 * row).transpose();
+  }
+  H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
+  H.bottomRightCorner<3, 3>() = matrix_of<double>(sums.segment<6>(15));
+  return {H, sums.tail<6>()};
+}
+
+}  // namespace
+
+/// Places the next features, many at a time, here and in match(), so that the memory's answers
+/// overlap. Returns how many.
+std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t first,
+                            std::size_t stride) {
+  std::size_t n = 0;
+  for (std::size_t k = first; k < features.size() && n < asked_.size(); k += stride, ++n) {
+    Asked& one = asked_[n];
+    const Feature& f = features[k];
+    one.feature = &f;
+    one.last = &last_[k];
+    one.turned_m = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
+    one.point_m = one.turned_m.cast<double>() + sampled_.origin_m(f.s);
+  }
+  return n;
+}
+
+/// Where a level knows too little the next coarser one is asked.
+void Solver::match(std::span<Asked> asked, LocalMaps& maps, std::size_t finest) {
+  std::array<Asked*, kAtATime> unmatched;
+  std::size_t n = 0;
+  for (Asked& one : asked) unmatched[n++] = &one;
+  for (std::size_t level = finest; level < LocalMaps::kLevels && n > 0; ++level) {
+    const auto left = std::span(unmatched).first(n);
+    for (Asked* one : left) {
+      one->place = maps.at(level, one->feature->kind).place_of(one->point_m, (*one->last)[level]);
+    }
+    for (Asked* one : left) {
+      one->cell = maps.at(level, one->feature->kind).cell_at(one->place);
+      (*one->last)[level] = one->cell;
+    }
+    n = 0;
+    for (Asked* one : left) {
+      one->match = maps.at(level, one->feature->kind).match(one->cell, one->point_m);
+      if (one->match.information == nullptr) unmatched[n++] = one;
+    }
+  }
+}
+
+void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
+                        std::size_t finest, Solution& solution) {
+  sample(solution.trajectory, sampled_);
+  for (ResidualSums& bin : bins_) bin.setZero();
+  Sums sums;
+  solution.asked = solution.matched = 0;
+  const float data_weight = config_.data_weight * static_cast<float>(stride);
+  const float kernel_scale = stride > 1 ? kCoarseKernels : 1.0F;
+  for (std::size_t k = 0, n = 0; k < features.size(); k += n * stride) {
+    n = look_up(features, k, stride);
+    solution.asked += static_cast<int>(n);
+    const std::span asked = std::span(asked_).first(n);
+    match(asked, maps, finest);
+    for (const Asked& one : asked) {
+      if (one.match.information == nullptr) continue;
+      ++solution.matched;
+      add_residual(one, kernel_scale, data_weight, sums);
+    }
+  }
+  solution.inliers = sums.weights;
+  solution.structure_inliers = sums.structure;
+  solution.mean_square = sums.weights > 0.0 ? sums.squares / sums.weights : 0.0;
+}
+
+void Solver::add_residual(const Asked& one, float kernel_scale, float data_weight, Sums& sums) {
+  const bool ground = one.feature->kind == FeatureKind::ground;
+  const Eigen::Vector3f& r = one.match.from_mean_m;
+  const Symmetric& i = *one.match.information;
+  const Eigen::Matrix3f O = matrix_of(i);
+  const Eigen::Vector3f Or = O * r;
+  const float square = r.dot(Or);
+  const float kernel = kernel_scale * (ground ? config_.ground_kernel : config_.structure_kernel);
+  const float robust = 1.0F / (1.0F + square / (kernel * kernel));
+  sums.weights += static_cast<double>(robust);
+  if (!ground) sums.structure += static_cast<double>(robust);
+  sums.squares += static_cast<double>(robust * square);
+  // J = [-[p]x  I] with p as turned: [p]x crosses columns from the left, its transpose rows from
+  // the right.
+  const Eigen::Vector3f& p = one.turned_m;
+  Eigen::Matrix3f C;  // [p]x O
+  for (int k = 0; k < 3; ++k) C.col(k) = p.cross(O.col(k));
+  const Eigen::Vector3f xx = p.cross(C.row(0)), yy = p.cross(C.row(1)), zz = p.cross(C.row(2));
+  const Eigen::Vector3f pOr = p.cross(Or);
+  const std::array<float, ResidualSums::RowsAtCompileTime> terms{
+      xx[0],   xx[1],   xx[2],   yy[1],   yy[2],   zz[2],   C(0, 0), C(0, 1), C(0, 2),
+      C(1, 0), C(1, 1), C(1, 2), C(2, 0), C(2, 1), C(2, 2), i[0],    i[1],    i[2],
+      i[3],    i[4],    i[5],    -pOr[0], -pOr[1], -pOr[2], -Or[0],  -Or[1],  -Or[2]};
+  const float w = robust * data_weight;
+  const float and_half = one.feature->s * kBins + 0.5F;  // the nearest, without a call
+  double* sum = bins_[static_cast<std::size_t>(and_half)].data();
+  for (std::size_t k = 0; k < terms.size(); ++k) sum[k] += static_cast<double>(w * terms[k]);
+}
+
+/// Of the knots, from all bins; and the information that the data have of the pose.
+Solver::Equations Solver::data_equations(const Prior& prior, Matrix6d& data_information) const {
+  const int n = kKnotSize * (prior.segments + 1);
+  Equations all{NormalMatrix::Zero(n, n), Unknowns::Zero(n)};
+  data_information.setZero();
+  for (int bin = 0; bin <= kBins; ++bin) {
+    const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
+    data_information += A / static_cast<double>(config_.data_weight);
+    const KnotWeights w =
+        weights_at(static_cast<double>(bin) / kBins, prior.segments, prior.span_s);
+    for (int i = 0; i < 4; ++i) {
+      const int row = kKnotSize * w.first + 6 * i;
+      const double wi = w.weight[static_cast<std::size_t>(i)];
+      all.b.segment<6>(row) += wi * c;
+      for (int j = i; j < 4; ++j) {
+        all.H.block<6, 6>(row, kKnotSize * w.first + 6 * j) +=
+            wi * w.weight[static_cast<std::size_t>(j)] * A;
+      }
+    }
+  }
+  all.H.triangularView<Eigen::StrictlyLower>() = all.H.transpose();
+  return all;
+}
+
+/// Residuals that look the same way share what misleads them. The sums of a bin, as clusters, tell
+/// by how much that makes the pose less certain than independent residuals of one sigma would
+/// (Liang and Zeger, 1986). `step`: the last one, which the residuals have not seen yet.
+Vector6d Solver::design_effect(const Unknowns& step, const Prior& prior) const {
+  Vector6d squares = Vector6d::Zero(), expected = Vector6d::Zero();
+  for (int bin = 0; bin <= kBins; ++bin) {
+    const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
+    const KnotWeights w =
+        weights_at(static_cast<double>(bin) / kBins, prior.segments, prior.span_s);
+    Vector6d moved = Vector6d::Zero();
+    for (int i = 0; i < 4; ++i) {
+      moved += w.weight[static_cast<std::size_t>(i)] * step.segment<6>(kKnotSize * w.first + 6 * i);
+    }
+    squares += (c - A * moved).cwiseAbs2();
+    expected += static_cast<double>(config_.data_weight) * A.diagonal();
+  }
+  return squares.cwiseQuotient(expected.cwiseMax(1e-9));
+}
+
+Solution Solver::unmoved(const Prior& prior) const {
+  Solution solution;
+  solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, prior.segments,
+                         Unknowns::Zero(Eigen::Index{kKnotSize} * (prior.segments + 1))};
+  return solution;
+}
+
+Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
+                       std::size_t finest) {
+  // Far from the solution a part of the features shows the way as well as all of them.
+  constexpr std::size_t kCoarseStride = 4;
+  constexpr double kNear_rad = 3e-3, kNear_m = 0.03;
+  constexpr double kEnough_rad = 3e-4, kEnough_m = 3e-3;
+  // Weights and cells follow each step, so that the next would be about a quarter of it.
+  constexpr double kFurther = 1.2;
+  std::size_t stride = kCoarseStride;
+  Solution solution = unmoved(prior);
+  const Eigen::Index n = solution.trajectory.knots.rows();
+  last_.assign(features.size(), LocalMaps::kNoCells);
+  while (solution.iterations < config_.max_iterations && !solution.converged) {
+    accumulate(features, stride, maps, stride == 1 ? finest : LocalMaps::kUsual, solution);
+    Equations data = data_equations(prior, solution.data_information);
+    const Unknowns x = solution.trajectory.knots;
+    auto& [H, b] = data;
+    const Vector6d innovation = normalised_innovation(prior, x);
+    add_prior(inflated(prior, innovation), x, H, b);
+    const Unknowns step = H.ldlt().solve(b);
+    if (!step.allFinite()) break;
+    solution.trajectory.knots += (stride == 1 ? kFurther : 1.0) * step;
+    ++solution.iterations;
+    const Vector6d end = step.segment<6>(n - kKnotSize);
+    const double turned_rad = end.head<3>().norm(), moved_m = end.tail<3>().norm();
+    solution.converged = stride == 1 && turned_rad < kEnough_rad && moved_m < kEnough_m;
+    if (turned_rad < kNear_rad && moved_m < kNear_m) stride = 1;
+    // The last step is always taken with all features.
+    if (solution.iterations + 1 >= config_.max_iterations) stride = 1;
+    if (solution.converged || solution.iterations == config_.max_iterations) {
+      solution.end_information = marginal_of_last(H);
+      solution.design_effect = design_effect(step, prior);
+    }
+  }
+  const KnotInformation noise = process_information(prior.acceleration_density, prior.span_s);
+  solution.motion_information = noise.inverse().topLeftCorner<6, 6>().inverse();
+  return solution;
+}
+
+}  // namespace lilo::core

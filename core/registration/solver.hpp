@@ -1,0 +1,96 @@
+#pragma once
+
+#include "core/image/feature_image.hpp"
+#include "core/map/local_maps.hpp"
+#include "core/motion/motion_prior.hpp"
+#include "core/motion/trajectory.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+#include <vector>
+
+/// Alignment of one scan with the local map: Gauss-Newton over the knots of its trajectory.
+namespace lilo::core {
+
+struct SolverConfig {
+  int max_iterations = 12;
+  float ground_kernel = 1.5F;     ///< Cauchy scale in sigmas of the map: ground is rough
+  float structure_kernel = 0.7F;  ///< tighter: structure moves and hides
+  float data_weight = 0.1F;  ///< neighbouring residuals are not independent: each counts for less
+};
+
+struct Solution {
+  Trajectory trajectory;
+  KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
+  /// Of the pose, from the scan alone, as though its residuals were independent.
+  Matrix6d data_information = Matrix6d::Zero();
+  /// Of the pose, from a motion known exactly until the scan began.
+  Matrix6d motion_information = Matrix6d::Zero();
+  /// Variance of the pose over that of independent residuals of one sigma; by axis.
+  Vector6d design_effect = Vector6d::Zero();
+  int asked = 0;                 ///< features looked up
+  int matched = 0;               ///< features that found a distribution
+  double inliers = 0;            ///< sum of robust weights
+  double structure_inliers = 0;  ///< of them what is not ground
+  double mean_square = 0.0;      ///< weighted mean of squared residuals in sigmas
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// What residuals sum up to, for a pose (rotation, translation): of the symmetric J'OJ the block of
+/// the rotation (xx xy xz yy yz zz), the one beside it row by row, and that of the translation;
+/// then -J'Or.
+using ResidualSums = Eigen::Matrix<double, 6 + 9 + 6 + 6, 1>;
+
+/// Aligns features with the maps. Keeps its working memory between calls.
+class Solver {
+ public:
+  /// `most_features`: of one solve(), for which memory is reserved.
+  Solver(const SolverConfig& config, std::size_t most_features) : config_(config) {
+    last_.reserve(most_features);
+  }
+  /// The prediction, as though nothing had matched.
+  [[nodiscard]] Solution unmoved(const Prior& prior) const;
+  /// `finest`: level of the maps to begin with once the solution is near.
+  Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
+                 std::size_t finest = LocalMaps::kUsual);
+
+ private:
+  static constexpr int kBins = 32;  // a scan's residuals share one of so many instants
+  static constexpr std::size_t kAtATime = 32;
+  /// A feature under the trajectory, and what it matches.
+  struct Asked {
+    const Feature* feature = nullptr;
+    LocalMaps::PerLevel* last = nullptr;  // its cells in the step before
+    Eigen::Vector3f turned_m;             // in the odometry's axes, from the sensor
+    Eigen::Vector3d point_m;              // in the odometry's frame
+    CellMap::Place place;
+    std::int32_t cell = CellMap::kNone;
+    Match match;
+  };
+  struct Sums {
+    double weights = 0.0, squares = 0.0, structure = 0.0;
+  };
+  /// H step = b of the deviation from the predicted motion, over all knots.
+  struct Equations {
+    NormalMatrix H;
+    Unknowns b;
+  };
+  void accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
+                  std::size_t finest, Solution& solution);
+  std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);
+  static void match(std::span<Asked> asked, LocalMaps& maps, std::size_t finest);
+  void add_residual(const Asked& one, float kernel_scale, float data_weight, Sums& sums);
+  Vector6d design_effect(const Unknowns& step, const Prior& prior) const;
+  Equations data_equations(const Prior& prior, Matrix6d& data_information) const;
+
+  SolverConfig config_;
+  Sampled sampled_;
+  std::array<ResidualSums, kBins + 1> bins_;
+  std::array<Asked, kAtATime> asked_;
+  std::vector<LocalMaps::PerLevel> last_;
+};
+
+}  // namespace lilo::core

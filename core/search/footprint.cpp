@@ -1,0 +1,170 @@
+#include "core/search/footprint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace lilo::core {
+namespace {
+
+constexpr std::int32_t kSide = 512;  // cells; 256 m
+constexpr std::int32_t kOutside = kSide * kSide;
+constexpr float kPerMetre = Footprint::kPerMetre;
+
+/// Of a place that no integer holds, nan among them, one just outside.
+std::int32_t whole(float v) {
+  v = v > -1.0F ? v : -1.0F;
+  return static_cast<std::int32_t>(v < static_cast<float>(kSide) ? v : static_cast<float>(kSide));
+}
+
+std::int32_t cell_at(float x, float y) {
+  const std::int32_t column = whole(x), row = whole(y);
+  const bool outside = ((column | row) & -kSide) != 0;  // negative, or too large
+  return outside ? kOutside : row * kSide + column;
+}
+
+/// From where to where a scan was taken, in cells from the grid's corner.
+struct Way {
+  Way(const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m)
+      : begin((kPerMetre * begin_m).cast<float>().array() + 0.5F * static_cast<float>(kSide)),
+        to_end((kPerMetre * (end_m - begin_m)).cast<float>()) {}
+  [[nodiscard]] std::int32_t cell_of(const Plan& scan, std::size_t k) const {
+    return cell_at(scan.x[k] + begin.x() + scan.s[k] * to_end.x(),
+                   scan.y[k] + begin.y() + scan.s[k] * to_end.y());
+  }
+  Eigen::Vector2f begin, to_end;
+};
+
+/// How many of `size` points in an outline's order.
+std::size_t count_in(Share share, std::size_t size) {
+  return Outline::before(share == Share::all ? Outline::kParts : 1, size);
+}
+
+}  // namespace
+
+void Outline::reserve(std::size_t size) {
+  for (std::vector<float>* part : {&x_m, &y_m, &z_m, &s}) part->reserve(size);
+}
+
+std::size_t Outline::before(std::size_t part, std::size_t size) {
+  return part * (size / kParts) + std::min(part, size % kParts);
+}
+
+void Outline::assign(const std::vector<Feature>& features) {
+  const auto stands = [](const Feature& f) { return f.kind == FeatureKind::structure; };
+  const auto size =
+      static_cast<std::size_t>(std::count_if(features.begin(), features.end(), stands));
+  for (std::vector<float>* part : {&x_m, &y_m, &z_m, &s}) part->resize(size);
+  std::size_t n = 0;
+  for (const Feature& f : features) {
+    if (!stands(f)) continue;
+    const std::size_t k = before(n % kParts, size) + n / kParts;
+    x_m[k] = f.x_m;
+    y_m[k] = f.y_m;
+    z_m[k] = f.z_m;
+    s[k] = f.s;
+    ++n;
+  }
+}
+
+void Plan::reserve(std::size_t size) {
+  for (std::vector<float>* part : {&x, &y, &s}) part->reserve(size);
+}
+
+void Plan::assign(const Outline& scan, const Eigen::Quaterniond& begin,
+                  const Eigen::Quaterniond& end, Share share) {
+  for (std::vector<float>* part : {&x, &y}) part->resize(scan.s.size());
+  s = scan.s;
+  // Within one scan the turn is small: the middle of it serves all.
+  const Eigen::Matrix<float, 2, 3> R =
+      (kPerMetre * begin.slerp(0.5, end).toRotationMatrix().topRows<2>()).cast<float>();
+  const float xx = R(0, 0), xy = R(0, 1), xz = R(0, 2);
+  const float yx = R(1, 0), yy = R(1, 1), yz = R(1, 2);
+  const std::size_t n = count_in(share, s.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    x[k] = xx * scan.x_m[k] + xy * scan.y_m[k] + xz * scan.z_m[k];
+    y[k] = yx * scan.x_m[k] + yy * scan.y_m[k] + yz * scan.z_m[k];
+  }
+}
+
+void Plan::assign_turning(const Outline& scan, const Eigen::Quaterniond& begin,
+                          const Eigen::Quaterniond& end, Share share) {
+  constexpr std::size_t kInstants = 16;
+  std::array<Eigen::Matrix<float, 2, 3>, kInstants> R;
+  for (std::size_t k = 0; k < kInstants; ++k) {
+    const double middle = (static_cast<double>(k) + 0.5) / kInstants;
+    R[k] = (kPerMetre * begin.slerp(middle, end).toRotationMatrix().topRows<2>()).cast<float>();
+  }
+  for (std::vector<float>* part : {&x, &y}) part->resize(scan.s.size());
+  s = scan.s;
+  const std::size_t n = count_in(share, s.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto instant = static_cast<std::size_t>(s[k] * kInstants);
+    const Eigen::Vector2f seen = R[std::min(instant, kInstants - 1)] *
+                                 Eigen::Vector3f(scan.x_m[k], scan.y_m[k], scan.z_m[k]);
+    x[k] = seen.x();
+    y[k] = seen.y();
+  }
+}
+
+Footprint::Footprint(std::size_t most) : at_(most), taken_(kOutside + 1) { clear(); }
+
+void Footprint::clear() {
+  if (++now_ == 0) {
+    std::fill(taken_.begin(), taken_.end(), 0);
+    now_ = 1;
+  }
+  taken_.back() = now_;  // what is outside never counts
+  cells_ = 0;
+}
+
+void Footprint::add(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
+                    Share share) {
+  const Way way(begin_m, end_m);
+  const std::size_t n = std::min(count_in(share, scan.s.size()), at_.size());
+  std::int32_t* at = at_.data();
+  for (std::size_t k = 0; k < n; ++k) at[k] = way.cell_of(scan, k);
+  std::uint8_t* taken = taken_.data();
+  const std::uint8_t now = now_;
+  int cells = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    cells += static_cast<int>(taken[at[k]] != now);
+    taken[at[k]] = now;
+  }
+  cells_ += cells;
+}
+
+void Footprint::add(const Eigen::Vector2d& point_m, int around) {
+  const Eigen::Vector2f from = Way(point_m, point_m).begin;
+  for (int dy = -around; dy <= around; ++dy) {
+    for (int dx = -around; dx <= around; ++dx) {
+      std::uint8_t& taken = taken_[static_cast<std::size_t>(
+          cell_at(from.x() + static_cast<float>(dx), from.y() + static_cast<float>(dy)))];
+      cells_ += static_cast<int>(taken != now_);
+      taken = now_;
+    }
+  }
+}
+
+void Footprint::aim(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
+                    Share share, int margin) {
+  const Way way(begin_m, end_m);
+  const std::size_t n = std::min(count_in(share, scan.s.size()), at_.size());
+  aimed_ = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::int32_t at = way.cell_of(scan, k);
+    const std::int32_t x = at % kSide, y = at / kSide;
+    at_[aimed_] = at;
+    aimed_ += std::min(x, y) >= margin && std::max(x, y) < kSide - margin ? 1 : 0;
+  }
+}
+
+int Footprint::returns_on(int x, int y) const {
+  const std::uint8_t* taken = taken_.data() + std::ptrdiff_t{y} * kSide + x;
+  const std::uint8_t now = now_;
+  int returns = 0;
+  for (std::size_t k = 0; k < aimed_; ++k) returns += static_cast<int>(taken[at_[k]] == now);
+  return returns;
+}
+
+}  // namespace lilo::core

@@ -1,0 +1,64 @@
+#include "core/tracking/drift.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+
+namespace lilo::core {
+
+void Drift::begin(const Matrix6d& at_start) {
+  random_ = at_start_ = at_start;
+  steady_.setZero();
+  coasted_s_ = 0.0;
+}
+
+void Drift::move(const Eigen::Vector3d& by_m) {
+  Matrix6d F = Matrix6d::Identity();
+  F.bottomLeftCorner<3, 3>() = -skew(by_m);  // rotation x by
+  random_ = F * random_ * F.transpose();
+  steady_ = F * steady_;
+}
+
+void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor,
+                    int keyframes) {
+  // An error of one keyframe moves what is seen of the map by its part in it. That is about a
+  // dozen, fewer in a young map; the first, which is aligned with nothing, stands for four. Rough
+  // figures: core/README.md says what comes of them.
+  constexpr int kSeenAtOnce = 13;
+  constexpr double kSteady = 0.5;  // of an alignment's standard error
+  const double part = 1.0 / std::min(keyframes + 3, kSeenAtOnce);
+  random_ += part * part * alignment;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(alignment);
+  if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] >= 0.0)) return;
+  Matrix6d sensor_to_odom = Matrix6d::Zero();
+  sensor_to_odom.topLeftCorner<3, 3>() = R_odom_sensor.toRotationMatrix();
+  sensor_to_odom.bottomRightCorner<3, 3>() = sensor_to_odom.topLeftCorner<3, 3>();
+  steady_ += kSteady * part * eigen.operatorSqrt() * sensor_to_odom;
+}
+
+// White noise of density q makes a position uncertain by q t^3 / 3: by q t^2 dt more in a moment.
+void Drift::coast(const Eigen::Vector3d& axis, double acceleration_density, double span_s) {
+  coasted_s_ += span_s;
+  const double variance = acceleration_density * coasted_s_ * coasted_s_ * span_s;
+  random_.bottomRightCorner<3, 3>() += variance * axis * axis.transpose();
+}
+
+// One scan that tells a little more than nothing does not give the velocity back.
+void Drift::see(double span_s) { coasted_s_ = std::max(0.0, coasted_s_ - span_s); }
+
+Matrix6d in_sensor_axes(const Matrix6d& covariance, const Eigen::Quaterniond& R_odom_sensor) {
+  const Eigen::Matrix3d back = R_odom_sensor.conjugate().toRotationMatrix();
+  Matrix6d A = Matrix6d::Zero();
+  A.topLeftCorner<3, 3>() = back;
+  A.bottomRightCorner<3, 3>() = back;
+  return A * covariance * A.transpose();
+}
+
+Matrix6d translation_first(const Matrix6d& covariance) {
+  Matrix6d swapped;
+  swapped << covariance.bottomRightCorner<3, 3>(), covariance.bottomLeftCorner<3, 3>(),
+      covariance.topRightCorner<3, 3>(), covariance.topLeftCorner<3, 3>();
+  return swapped;
+}
+
+}  // namespace lilo::core
