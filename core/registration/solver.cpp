@@ -170,7 +170,7 @@ Vector6d Solver::design_effect(const Unknowns& step, const Prior& prior) const {
   return squares.cwiseQuotient(expected.cwiseMax(1e-9));
 }
 
-Solution Solver::unmoved(const Prior& prior) const {
+Solution Solver::unaligned(const Prior& prior) const {
   Solution solution;
   solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, prior.segments,
                          Unknowns::Zero(Eigen::Index{kKnotSize} * (prior.segments + 1))};
@@ -186,7 +186,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   // Weights and cells follow each step, so that the next would be about a quarter of it.
   constexpr double kFurther = 1.2;
   std::size_t stride = kCoarseStride;
-  Solution solution = unmoved(prior);
+  Solution solution = unaligned(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
   last_.assign(features.size(), LocalMaps::kNoCells);
   while (solution.iterations < config_.max_iterations && !solution.converged) {

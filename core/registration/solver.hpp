@@ -52,7 +52,7 @@ class Solver {
     last_.reserve(most_features);
   }
   /// The prediction, as though nothing had matched.
-  [[nodiscard]] Solution unmoved(const Prior& prior) const;
+  [[nodiscard]] Solution unaligned(const Prior& prior) const;
   /// `finest`: level of the maps to begin with once the solution is near.
   Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
                  std::size_t finest = LocalMaps::kUsual);

@@ -3,315 +3,235 @@
 #include "core/registration/weak_directions.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
+#include <optional>
 
 namespace lilo::core {
 namespace {
 
-constexpr std::size_t kMinFeatures = 100;
-constexpr std::size_t kMostLooks = 4096;
-constexpr double kNewest = 0.1;  // weight of a scan in running means
-// A simulation without noise is no reason to be sure.
-constexpr double kLeastDesignEffect = 0.05;
-constexpr int kScansToGiveUp = 10;  // that saw enough and found nothing of it in the map
+constexpr int kScansToGiveUp = 10;  // in vain, on end
+constexpr int kGrown = 15;          // keyframes of a map that must know where it is
 
-double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
-
-CellMapConfig map_config(const DefaultConfig& config, FeatureKind kind, double cell_m,
-                         int capacity) {
-  return {.cell_m = static_cast<float>(cell_m),
-          .noise_m = static_cast<float>(config.noise_m),
-          .level = kind == FeatureKind::ground,
-          .capacity = capacity};
-}
-
-LocalMaps make_maps(const DefaultConfig& c) {
-  const auto level = [&](double cell_m, int capacity) {
-    return std::array{map_config(c, FeatureKind::ground, cell_m, capacity),
-                      map_config(c, FeatureKind::structure, cell_m, capacity)};
-  };
-  // Cells of a surface grow fewer with the square of their size; a quarter leaves room.
-  return LocalMaps({level(0.5 * c.cell_m, c.map_cells / 4), level(c.cell_m, c.map_cells),
-                    level(c.coarse_cell_m, c.map_cells / 4)});
-}
-
-SolverConfig solver_config(const DefaultConfig& c) {
-  SolverConfig s;
-  s.max_iterations = c.max_iterations;
-  s.ground_kernel = static_cast<float>(c.ground_kernel);
-  s.structure_kernel = static_cast<float>(c.structure_kernel);
-  s.data_weight = static_cast<float>(c.data_weight);
-  return s;
-}
-
-Vector6d nominal_density(const DefaultConfig& c) {
-  Vector6d density;
-  density << c.roll_pitch_density, c.roll_pitch_density, c.yaw_density,
-      Eigen::Vector3d::Constant(c.translation_density);
-  return density;
-}
-
-/// The level of the maps that these surroundings ask for: half cells where more than half of what
-/// stands is near, as in rooms.
-std::size_t finest_level(const std::vector<Feature>& chosen) {
-  constexpr float kNarrow_m = 5.0F;
-  int near = 0, all = 0;
-  for (const Feature& f : chosen) {
-    if (f.kind == FeatureKind::ground) continue;
-    ++all;
-    near += static_cast<int>(f.x_m * f.x_m + f.y_m * f.y_m + f.z_m * f.z_m < kNarrow_m * kNarrow_m);
-  }
-  return 2 * near > all ? LocalMaps::kNarrow : LocalMaps::kUsual;
+bool is_stationary(const Twist& twist) {
+  constexpr double kStill_mps = 0.1, kStill_radps = 0.03;
+  return twist.linear_mps.norm() < kStill_mps && twist.angular_radps.norm() < kStill_radps;
 }
 
 }  // namespace
 
 Tracker::Tracker(const OdometryConfig& config)
-    : config_(config),
-      selection_(config.default_profile.ground_features, config.default_profile.structure_features),
-      maps_(make_maps(config.default_profile)),
-      solver_(solver_config(config.default_profile), selection_.most()),
-      process_noise_(nominal_density(config.default_profile)),
-      footprint_(selection_.most()),
-      motion_check_(selection_.most()),
+    : selection_(config.default_profile.ground_features, config.default_profile.structure_features),
+      local_(config.default_profile, selection_.most()),
+      initializer_(selection_.most(),
+                   static_cast<std::size_t>(config.default_profile.map_features)),
       relocalizer_(selection_.most()),
-      design_effect_(Vector6d::Constant(kLeastDesignEffect)),
-      information_(first_information()) {
-  held_.features.reserve(for_map());
-  points_.reserve(for_map());
-  looks_.reserve(kMostLooks);
-  for (Seen& seen : seen_) {
-    seen.for_map.reserve(for_map());
-    seen.chosen.reserve(selection_.most());
-    seen.outline.reserve(selection_.most());
-    seen.plan.reserve(selection_.most());
-  }
-}
+      motion_check_(selection_.most()) {}
 
 Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, StageHook hook) {
-  const std::vector<Feature>& chosen = selection_.choose(features);
+  scan_ = observe(scan, selection_.choose(features));
   hook(Stage::filter);
-  timing_ = {scan.start_ns, scan.end_ns, scan.motion_compensated};
-  finest_ = finest_level(chosen);
-  if (chosen.size() >= kMinFeatures && is_gone(chosen)) {
-    start_anew();
-    ++restarts_;
+  if (must_begin_session()) begin_session();
+  update_phase(features);
+  const Prior prior = local_.predict(scan_.timing);
+  alignment_ = judge(solve(prior));
+  accept(prior);
+  watch_session();
+  if (!is_first() && alignment_.status != TrackingStatus::lost) {
+    alignment_.weak = local_.find_weak_directions(scan_.timing, alignment_.solution);
   }
-  remember(features, chosen);
-  const Prior prior = predict(timing_);
-  solution_ = solve(scan, chosen, prior);
-  status_ = status_of(scan, solution_, chosen);
-  is_doubtful_ = relative_fit(solution_, chosen) < kDoubtful;
-  is_explained_ = status_ != TrackingStatus::lost && is_explained(solution_, chosen);
-  if (is_explained_) {
-    last_aligned_ns_ = timing_.end_ns;
-    learn_fit(chosen);
-  }
-  observe_motion();
-  accept(timing_, prior, solution_);
-  if (status_ != TrackingStatus::lost) standing_.observe(T_odom_sensor_, twist_);
-  if (seen_count_ > 1 && status_ != TrackingStatus::lost) {
-    note_track(seen_[seen_count_ - 1], solution_.trajectory.at(0.0), T_odom_sensor_);
-  }
-  const bool in_vain = !is_explained_ && chosen.size() >= kMinFeatures;
-  lost_scans_ = in_vain ? lost_scans_ + 1 : 0;
-  if (is_refuted(chosen)) {
-    status_ = TrackingStatus::lost;
-    lost_scans_ = kScansToGiveUp;
-  }
-  find_weak_directions();
-  Estimate result = estimate(scan, solution_, chosen);
+  const Estimate result = estimate(scan);
   hook(Stage::align);
   return result;
 }
 
-Solution Tracker::solve(const Scan& scan, const std::vector<Feature>& chosen, const Prior& prior) {
-  if (scan_count_ == 1) return start();
-  if (chosen.size() >= kMinFeatures && may_be_elsewhere()) return relocalize(scan, chosen, prior);
-  return follow_turn(align_moving_or_standing(chosen, prior), chosen, prior);
-}
-
-Solution Tracker::align_moving_or_standing(const std::vector<Feature>& chosen, const Prior& prior) {
-  const Solution moving = solver_.solve(chosen, maps_, prior, finest_);
-  if (!standing_.is_likely()) return moving;
-  const Solution standing = solver_.solve(chosen, maps_, standing_.hypothesis(prior), finest_);
-  return fits_as_well(standing.structure_inliers, moving.structure_inliers) ? standing : moving;
-}
-
 void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
-  grow_map(timing_, features, solution_);
-  ++scan_count_;
-  if (lost_scans_ == kScansToGiveUp) {
-    start_anew();
-    ++restarts_;
-  }
+  const bool is_lost = alignment_.status == TrackingStatus::lost;
+  const MapUse use = is_lost                   ? MapUse::none
+                     : alignment_.is_explained ? MapUse::keyframe
+                                               : MapUse::end_only;
+  local_.grow_map(scan_.timing, features, alignment_.solution, use, scan_.finest_level);
   hook(Stage::update_map);
 }
 
-/// At the start the pose is the origin by definition; of the motion only what vehicles do is known:
-/// they go fast along the ground and turn about the upright, and do little else.
-KnotInformation Tracker::first_information() {
-  constexpr double kPose = 1e-4;  // m, rad
-  constexpr double kSpeed_mps = 20.0, kClimb_mps = 0.5, kYaw_radps = 0.5, kTilt_radps = 0.1;
-  Knot sigma;
-  sigma << Vector6d::Constant(kPose), kTilt_radps, kTilt_radps, kYaw_radps, kSpeed_mps, kSpeed_mps,
-      kClimb_mps;
-  return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+/// Whether the map can be of no more use. Where the sensor went unseen for longer than it can be
+/// searched, the old map must not be asked: some place in it always looks like the new one. That
+/// the clock was set is no reason: then the sensor is where it was predicted. One that stood is
+/// waited for.
+bool Tracker::must_begin_session() {
+  if (session_.is_over) return true;
+  if (phase_ == Phase::starting || !scan_.says_enough()) return false;
+  if (last_.unseen_s(scan_.timing) <= kLongestGap_s || is_stationary(local_.state().twist)) {
+    return false;
+  }
+  const Prior prior = local_.predict(scan_.timing);
+  const Solution found = local_.align(*scan_.features, prior, scan_.finest_level);
+  return !is_in_place(found, prior, last_.fit.relative(found, scan_.structure));
 }
 
-/// First to last firing, as far as the scan tells.
-double Tracker::span_of(const Timing& timing) {
-  constexpr double kUsual_s = 0.1;
-  const double span_s = seconds(timing.end_ns - timing.start_ns);
-  return span_s > 0.0 ? span_s : kUsual_s;
+/// Gives the map up and begins another where the prediction ends: wherever the sensor is now, it is
+/// not where the map knows it, and only a new map ever lets it track again.
+void Tracker::begin_session() {
+  const std::uint32_t restarts = session_.restarts + 1;
+  begin_map();
+  session_.restarts = restarts;
 }
 
-/// Whether nothing is missing between a scan and the one that ended then.
-bool Tracker::follows(const Timing& scan, std::int64_t end_ns) {
-  constexpr std::int64_t kNextFiring_ns = 1'000'000;
-  return scan.start_ns - end_ns < kNextFiring_ns;
+void Tracker::begin_map() {
+  session_ = {.T_odom_start = session_.T_odom_start * local_.begin_map(),
+              .restarts = session_.restarts};
+  initializer_.clear();
+  last_.fit = {};
+  phase_ = Phase::starting;
 }
 
-Prior Tracker::predict(const Timing& scan) const {
-  const double duration_s = span_of(scan);
-  const double since_s = scan_count_ == 0 ? duration_s : seconds(scan.end_ns - last_end_ns_);
-  Prior prior;
-  // Returns that were compensated all belong to the end: the trajectory reaches back to the last.
-  prior.span_s = scan.motion_compensated ? since_s : duration_s;
-  if (prior.span_s <= 0.0) prior.span_s = duration_s;
-  // Longer, and it is looked for in the old map only where it was: the clock may have been set.
-  const double unseen_s = since_s - prior.span_s;
-  const double gap_s = unseen_s > kSearchable_s ? 0.0 : std::max(0.0, unseen_s);
-  prior.T_begin = moved(T_odom_sensor_, twist_, gap_s);
-  prior.twist = twist_;
-  prior.acceleration_density = process_noise_.density();
-  prior.begin_information = propagated(information_, prior.acceleration_density, gap_s);
-  prior.segments =
-      segments_for(prior.acceleration_density, prior.span_s, config_.default_profile.segments);
-  return prior;
+void Tracker::update_phase(const std::vector<Feature>& features) {
+  if (phase_ == Phase::starting) {
+    if (initializer_.must_begin_again(scan_.timing, features.size(), local_.state())) begin_map();
+    const bool was_lost = alignment_.status == TrackingStatus::lost;
+    if (!initializer_.add(scan_, features, was_lost, local_)) return;
+  }
+  phase_ = last_.unseen_s(scan_.timing) > kShortGap_s ? Phase::lost : Phase::tracking;
 }
 
-TrackingStatus Tracker::status_of(const Scan& scan, const Solution& solution,
-                                  const std::vector<Feature>& chosen) const {
+Solution Tracker::solve(const Prior& prior) {
+  // Who was switched on mostly stands; where a map was given up, more scans must tell.
+  if (initializer_.scans() == 2) return initializer_.align_second(session_.restarts == 0, local_);
+  if (phase_ == Phase::lost && scan_.says_enough()) {
+    return relocalize(local_.align(*scan_.features, prior, scan_.finest_level), prior);
+  }
+  const Solution found =
+      local_.align_moving_or_standing(*scan_.features, prior, scan_.finest_level);
+  if (phase_ == Phase::starting) return found;
+  return relocalizer_.follow_turn(found, scan_, prior, last_, local_);
+}
+
+/// The prediction, if the sensor is not found.
+Solution Tracker::relocalize(const Solution& at_prediction, const Prior& prior) {
+  const std::optional<Solution> found =
+      relocalizer_.find(scan_, prior, at_prediction, last_, local_);
+  const bool is_searchable = last_.unseen_s(scan_.timing) <= kLongestGap_s;
+  const bool is_found =
+      found && !is_lost(*found) &&
+      (is_searchable || is_in_place(*found, prior, last_.fit.relative(*found, scan_.structure)));
+  return is_found ? *found : local_.unaligned(prior);
+}
+
+/// Whether an alignment found too little of the scan in the map.
+bool Tracker::is_lost(const Solution& solution) const {
   // Of the features. A map of one scan, a tenth of an HDL-64E's, knows little of an open place.
-  const double min_matched = keyframes_ < kGrown ? 0.05 : 0.2;
+  const double min_matched = local_.map().keyframes() < kGrown ? 0.05 : 0.2;
   constexpr double kMinWeight = 0.3;  // mean robust weight; a good alignment has 0.7 and more
-  if (scan_count_ == 0) return TrackingStatus::initializing;
   const double matched = solution.matched;
-  if (matched < static_cast<double>(kMinFeatures) ||
-      matched < min_matched * static_cast<double>(chosen.size()) ||
-      solution.inliers < kMinWeight * matched || relative_fit(solution, chosen) < kNothing) {
-    return TrackingStatus::lost;
-  }
-  if (seen_count_ > 0 && !stands_) return TrackingStatus::initializing;  // or so it may be
-  const bool is_sure = solution.converged && relative_fit(solution, chosen) > kDoubtful;
-  return scan.complete && is_sure ? TrackingStatus::tracking : TrackingStatus::degraded;
+  return matched < static_cast<double>(kMinFeatures) ||
+         matched < min_matched * static_cast<double>(scan_.features->size()) ||
+         solution.inliers < kMinWeight * matched ||
+         last_.fit.relative(solution, scan_.structure) < kChanceFit;
 }
 
-void Tracker::observe_motion() {
-  // A scan whose returns all belong to its end has no middle.
-  if (timing_.motion_compensated || status_ == TrackingStatus::lost) {
-    process_noise_.interrupt();
-    return;
+Tracker::Alignment Tracker::judge(const Solution& solution) const {
+  Alignment a{.solution = solution};
+  if (is_first()) return a;
+  const double fit = last_.fit.relative(solution, scan_.structure);
+  if (is_lost(solution)) {
+    a.status = TrackingStatus::lost;
+    a.is_explained = false;
+    return a;
   }
-  process_noise_.observe(solution_.trajectory.at(0.5),
-                         timing_.start_ns + (timing_.end_ns - timing_.start_ns) / 2,
-                         solution_.data_information.inverse().diagonal());
+  a.is_explained = is_explained(solution, fit);
+  if (phase_ == Phase::starting && !initializer_.is_stationary()) return a;  // or so it may be
+  const bool is_sure = scan_.is_complete && solution.converged && fit > kDoubtfulFit;
+  a.status = is_sure ? TrackingStatus::tracking : TrackingStatus::degraded;
+  return a;
 }
 
-void Tracker::accept(const Timing& scan, const Prior& prior, const Solution& solution) {
-  last_end_ns_ = scan.end_ns;
-  if (scan_count_ == 0) return;
-  const Eigen::Vector3d from_m = T_odom_sensor_.translation_m;
-  if (status_ == TrackingStatus::lost) {
-    T_odom_sensor_ = moved(prior.T_begin, prior.twist, prior.span_s);
-    information_ = propagated(prior.begin_information, prior.acceleration_density, prior.span_s);
+void Tracker::accept(const Prior& prior) {
+  const Solution& solution = alignment_.solution;
+  const bool is_lost = alignment_.status == TrackingStatus::lost;
+  last_.is_doubtful = last_.fit.relative(solution, scan_.structure) < kDoubtfulFit;
+  if (alignment_.is_explained) {
+    last_.end_ns = scan_.timing.end_ns;
+    if (phase_ != Phase::starting) last_.fit.learn(solution, scan_.structure);
+  }
+  if (is_lost || scan_.timing.motion_compensated) {
+    local_.interrupt_noise();  // a scan whose returns all belong to its end has no middle
   } else {
-    T_odom_sensor_ = solution.trajectory.end();
-    twist_ = solution.trajectory.end_twist();
-    information_ = solution.end_information;
-    design_effect_ +=
-        kNewest * (solution.design_effect.cwiseMax(kLeastDesignEffect) - design_effect_);
+    local_.observe_noise(scan_.timing, solution);
   }
-  drift_.move(T_odom_sensor_.translation_m - from_m);
+  if (is_first()) {
+    local_.accept_first(scan_.timing);
+  } else if (is_lost) {
+    local_.accept_prediction(scan_.timing, prior);
+  } else {
+    local_.accept(scan_.timing, solution);
+    if (phase_ == Phase::starting) {
+      initializer_.set_track(solution.trajectory.at(0.0), local_.state().T_odom_sensor);
+    }
+  }
+  if (!is_lost) local_.observe_standing();
 }
 
-/// Whether the map led us astray: where it is known, another motion explains the scans better.
-bool Tracker::is_refuted(const std::vector<Feature>& chosen) {
-  if (seen_count_ > 0 || scan_count_ == 0 || status_ == TrackingStatus::lost) {
+/// Whether the map led the sensor astray: another motion explains the last scans better.
+bool Tracker::is_refuted() {
+  if (phase_ == Phase::starting || alignment_.status == TrackingStatus::lost) {
     motion_check_.clear();
     return false;
   }
-  const Pose begin = timing_.motion_compensated ? T_odom_sensor_ : solution_.trajectory.at(0.0);
-  motion_check_.see(chosen, begin, T_odom_sensor_, span_of(timing_), timing_.end_ns);
+  const Solution& solution = alignment_.solution;
+  const Pose& T_end = local_.state().T_odom_sensor;
+  const Pose T_begin = scan_.timing.motion_compensated ? T_end : solution.trajectory.at(0.0);
+  motion_check_.add(*scan_.features, T_begin, T_end, scan_.timing);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> by_information(
-      solution_.data_information.block<2, 2>(3, 3));
+      solution.data_information.block<2, 2>(3, 3));
   return motion_check_.is_refuted(by_information.eigenvectors().col(0));
 }
 
-void Tracker::find_weak_directions() {
-  weak_ = {};
-  if (scan_count_ == 0 || status_ == TrackingStatus::lost) return;
-  weak_ = weak_directions(solution_.data_information, solution_.motion_information,
-                          T_odom_sensor_.rotation);
-  const double span_s = span_of(timing_);
-  const Eigen::Vector3d along = weak_.all[0].direction.head<3>();  // m of a unit of rad and m
-  constexpr double kMostlyTurns = 0.3;
-  if (weak_.count == 0 || along.norm() < kMostlyTurns) {
-    drift_.see(span_s);
-  } else {
-    drift_.coast(T_odom_sensor_.rotation * along.normalized(),
-                 process_noise_.density().segment<2>(3).mean(), span_s);
-  }
+/// Ends the session where the map is of no more use.
+void Tracker::watch_session() {
+  const bool in_vain = !alignment_.is_explained && scan_.says_enough();
+  session_.scans_in_vain = in_vain ? session_.scans_in_vain + 1 : 0;
+  const bool refuted = is_refuted();
+  if (refuted) alignment_.status = TrackingStatus::lost;
+  session_.is_over = refuted || session_.scans_in_vain == kScansToGiveUp;
 }
 
-/// Of the last pose against the map: rotation, translation; odometry axes.
-Matrix6d Tracker::alignment_covariance() const {
-  // The error of a cell is the same for all scans that are matched with it: so many of them count
-  // as one. What is the same for longer is for Drift.
-  constexpr double kScansInView = 3.0;
-  const double unit = kScansInView * config_.default_profile.data_weight;
-  const Vector6d scale = (unit * design_effect_).cwiseSqrt();
-  return scale.asDiagonal() * information_.inverse().topLeftCorner<6, 6>() * scale.asDiagonal();
-}
-
-/// Of the last pose since the first: rotation, translation; the sensor's axes.
-Matrix6d Tracker::sensor_covariance() const {
-  return in_sensor_axes(drift_.covariance() + alignment_covariance(), T_odom_sensor_.rotation);
-}
-
-Estimate Tracker::estimate(const Scan& scan, const Solution& solution,
-                           const std::vector<Feature>& chosen) const {
+Estimate Tracker::estimate(const Scan& scan) const {
+  const Solution& solution = alignment_.solution;
+  const bool is_lost = alignment_.status == TrackingStatus::lost;
+  const LocalMaps& cells = local_.map().cells();
   Estimate e;
   e.scan_index = scan.index;
   e.stamp_ns = scan.end_ns;
-  e.T_odom_sensor = T_odom_start_ * T_odom_sensor_;
-  e.twist = twist_;
-  // Before the start is decided, nothing is lost yet.
-  const bool starting = status_ == TrackingStatus::lost && seen_count_ > 0 && !stands_;
-  e.status = starting ? TrackingStatus::initializing : status_;
-  e.ground_count =
-      static_cast<int>(std::count_if(chosen.begin(), chosen.end(), [](const Feature& f) {
-        return f.kind == FeatureKind::ground;
-      }));
-  e.surface_count = static_cast<int>(chosen.size()) - e.ground_count;
-  e.map_surface_count = maps_.size();
-  e.map_refused_count = maps_.refused();
+  e.T_odom_sensor = session_.T_odom_start * local_.state().T_odom_sensor;
+  e.twist = local_.state().twist;
+  // Before the initial motion is known, nothing is lost yet.
+  const bool is_unknown = phase_ == Phase::starting && !initializer_.is_stationary();
+  e.status = is_lost && is_unknown ? TrackingStatus::initializing : alignment_.status;
+  e.surface_count = static_cast<int>(scan_.structure);
+  e.ground_count = static_cast<int>(scan_.features->size()) - e.surface_count;
+  e.map_surface_count = cells.size();
+  e.map_refused_count = cells.refused();
   e.correspondence_count = solution.matched;
   e.iterations = solution.iterations;
-  e.weak_directions = weak_.all;
-  e.weak_count = weak_.count;
-  if (weak_.count > 0 && status_ == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
-  e.covariance = translation_first(sensor_covariance());
+  const WeakDirections& weak = alignment_.weak;
+  e.weak_directions = weak.all;
+  e.weak_count = weak.count;
+  if (weak.count > 0 && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
+  e.covariance = translation_first(local_.covariance());
   e.has_covariance = e.covariance.allFinite();
-  e.restarts = restarts_;
+  e.restarts = session_.restarts;
   e.residual_rms_sigma = std::sqrt(solution.mean_square);
   return e;
+}
+
+std::vector<Eigen::Vector3f> Tracker::map_points() const {
+  const LocalMaps& cells = local_.map().cells();
+  std::vector<Eigen::Vector3f> points_m;
+  points_m.reserve(static_cast<std::size_t>(cells.size()));
+  cells.for_each_mean([&](const Eigen::Vector3d& mean_m) {
+    points_m.emplace_back((session_.T_odom_start * mean_m).cast<float>());
+  });
+  return points_m;
 }
 
 }  // namespace lilo::core

@@ -7,8 +7,8 @@
 #include "core/paper/registration.hpp"
 #include "core/paper/segmentation.hpp"
 #include "core/registration/solver.hpp"
-#include "core/search/footprint.hpp"
-#include "core/search/relocalizer.hpp"
+#include "core/search/displacement_search.hpp"
+#include "core/search/top_down_grid.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -85,21 +85,21 @@ void selection(benchmark::State& state) {
 }
 
 // One turn and the 25 speeds that share it, as in the search for the motion at the start.
-void footprint(benchmark::State& state) {
+void top_down_grid(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
   core::FeatureImage image(1024, {});
   core::Selection chosen(1200, 1500);
-  core::Outline outline;
+  core::StructurePoints outline;
   outline.assign(chosen.choose(image.build(scan)));
-  core::Plan plan;
-  core::Footprint laid(chosen.most());
+  core::TopDownPoints plan;
+  core::TopDownGrid laid(chosen.most());
   const Eigen::Quaterniond ahead = Eigen::Quaterniond::Identity();
   for (auto _ : state) {
     plan.assign(outline, ahead, ahead);
     for (int speed = 0; speed < 25; ++speed) {
       laid.clear();
       laid.add(plan, {0.0, 0.0}, {0.1 * speed, 0.0});
-      benchmark::DoNotOptimize(laid.cells());
+      benchmark::DoNotOptimize(laid.occupied());
     }
   }
   state.SetItemsProcessed(state.iterations() * 25 * static_cast<std::int64_t>(outline.s.size()));
@@ -118,7 +118,7 @@ void fill(core::CellMap& map, const std::vector<Feature>& features) {
 }
 
 // As far as it ever looks, the map being drawn already.
-void relocalization(benchmark::State& state) {
+void displacement_search(benchmark::State& state) {
   const Scan scan = hall_scan(rings_of(state));
   core::FeatureImage image(1024, {});
   const auto& features = image.build(scan);
@@ -128,11 +128,11 @@ void relocalization(benchmark::State& state) {
   const auto& asked = chosen.choose(features);
   core::Trajectory standing;
   standing.knots = core::Unknowns::Zero(Eigen::Index{core::kKnotSize} * 2);
-  core::Relocalizer relocalizer(chosen.most());
-  relocalizer.set_map(map, Eigen::Vector3d::Zero());
+  core::DisplacementSearch search(chosen.most());
+  search.set_map(map, Eigen::Vector3d::Zero());
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        relocalizer.search(asked, standing, core::Relocalizer::kFarthest).data());
+        search.find(asked, standing, core::DisplacementSearch::kFarthest).data());
   }
 }
 
@@ -241,8 +241,8 @@ void paper_correspondences(benchmark::State& state) {
 #define LILO_KERNEL(name) BENCHMARK(name)->Arg(16)->Arg(64)->Unit(benchmark::kMicrosecond)
 LILO_KERNEL(image_features);
 LILO_KERNEL(selection);
-LILO_KERNEL(footprint);
-LILO_KERNEL(relocalization);
+LILO_KERNEL(top_down_grid);
+LILO_KERNEL(displacement_search);
 LILO_KERNEL(cell_map_insert);
 LILO_KERNEL(cell_map_find);
 LILO_KERNEL(solver_round);

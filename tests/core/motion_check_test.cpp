@@ -1,4 +1,4 @@
-#include "core/tracking/motion_check.hpp"
+#include "core/search/motion_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,11 @@ namespace {
 
 constexpr double kSpan_s = 0.1;
 constexpr double kSpeed_mps = 2.0;
+
+ScanTiming timing(double end_ns) {
+  const auto end = static_cast<std::int64_t>(std::llround(end_ns));
+  return {end - std::llround(1e9 * kSpan_s), end};
+}
 
 /// A road along a barrier that looks the same everywhere, with a truck ahead that keeps its
 /// distance and, where asked for, posts.
@@ -58,7 +63,7 @@ int scans_until_refuted(bool has_posts, double tracked_mps, const Eigen::Vector2
     Pose begin, end;
     begin.translation_m.x() = tracked_mps * (end_s - kSpan_s);
     end.translation_m.x() = tracked_mps * end_s;
-    check.see(road.scan(end_s), begin, end, kSpan_s, std::llround(1e9 * end_s));
+    check.add(road.scan(end_s), begin, end, timing(1e9 * end_s));
     if (check.is_refuted(axis)) return k;
   }
   return 100;
@@ -90,7 +95,7 @@ TEST(MotionCheck, WhereScansDoNotMeetNothingIsRefuted) {
       f.y_m = anywhere_m(random);
       f.kind = FeatureKind::structure;
     }
-    check.see(features, {}, {}, kSpan_s, std::llround(1e9 * kSpan_s * k));
+    check.add(features, {}, {}, timing(1e9 * kSpan_s * k));
     EXPECT_FALSE(check.is_refuted({1.0, 0.0}));
   }
 }
@@ -100,7 +105,7 @@ TEST(MotionCheck, AfterAClearItBeginsAgain) {
   MotionCheck check(2000);
   for (int k = 1; k < 50; ++k) {
     if (k % 5 == 0) check.clear();
-    check.see(road.scan(kSpan_s * k), {}, {}, kSpan_s, std::llround(1e9 * kSpan_s * k));
+    check.add(road.scan(kSpan_s * k), {}, {}, timing(1e9 * kSpan_s * k));
     EXPECT_FALSE(check.is_refuted({1.0, 0.0})) << "five scans are too few";
   }
 }

@@ -1,4 +1,4 @@
-#include "core/search/footprint.hpp"
+#include "core/search/top_down_grid.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int32_t kSide = 512;  // cells; 256 m
 constexpr std::int32_t kOutside = kSide * kSide;
-constexpr float kPerMetre = Footprint::kPerMetre;
+constexpr float kPerMetre = TopDownGrid::kPerMetre;
 
 /// Of a place that no integer holds, nan among them, one just outside.
 std::int32_t whole(float v) {
@@ -24,40 +24,40 @@ std::int32_t cell_at(float x, float y) {
 }
 
 /// From where to where a scan was taken, in cells from the grid's corner.
-struct Way {
-  Way(const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m)
+struct Sweep {
+  Sweep(const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m)
       : begin((kPerMetre * begin_m).cast<float>().array() + 0.5F * static_cast<float>(kSide)),
         to_end((kPerMetre * (end_m - begin_m)).cast<float>()) {}
-  [[nodiscard]] std::int32_t cell_of(const Plan& scan, std::size_t k) const {
+  [[nodiscard]] std::int32_t cell_of(const TopDownPoints& scan, std::size_t k) const {
     return cell_at(scan.x[k] + begin.x() + scan.s[k] * to_end.x(),
                    scan.y[k] + begin.y() + scan.s[k] * to_end.y());
   }
   Eigen::Vector2f begin, to_end;
 };
 
-/// How many of `size` points in an outline's order.
-std::size_t count_in(Share share, std::size_t size) {
-  return Outline::before(share == Share::all ? Outline::kParts : 1, size);
+/// How many of `size` structure points, in their order.
+std::size_t count_in(Subsample subsample, std::size_t size) {
+  return StructurePoints::before(subsample == Subsample::all ? StructurePoints::kParts : 1, size);
 }
 
 }  // namespace
 
-void Outline::reserve(std::size_t size) {
+void StructurePoints::reserve(std::size_t size) {
   for (std::vector<float>* part : {&x_m, &y_m, &z_m, &s}) part->reserve(size);
 }
 
-std::size_t Outline::before(std::size_t part, std::size_t size) {
+std::size_t StructurePoints::before(std::size_t part, std::size_t size) {
   return part * (size / kParts) + std::min(part, size % kParts);
 }
 
-void Outline::assign(const std::vector<Feature>& features) {
-  const auto stands = [](const Feature& f) { return f.kind == FeatureKind::structure; };
+void StructurePoints::assign(const std::vector<Feature>& features) {
+  const auto is_structure = [](const Feature& f) { return f.kind == FeatureKind::structure; };
   const auto size =
-      static_cast<std::size_t>(std::count_if(features.begin(), features.end(), stands));
+      static_cast<std::size_t>(std::count_if(features.begin(), features.end(), is_structure));
   for (std::vector<float>* part : {&x_m, &y_m, &z_m, &s}) part->resize(size);
   std::size_t n = 0;
   for (const Feature& f : features) {
-    if (!stands(f)) continue;
+    if (!is_structure(f)) continue;
     const std::size_t k = before(n % kParts, size) + n / kParts;
     x_m[k] = f.x_m;
     y_m[k] = f.y_m;
@@ -67,12 +67,12 @@ void Outline::assign(const std::vector<Feature>& features) {
   }
 }
 
-void Plan::reserve(std::size_t size) {
+void TopDownPoints::reserve(std::size_t size) {
   for (std::vector<float>* part : {&x, &y, &s}) part->reserve(size);
 }
 
-void Plan::assign(const Outline& scan, const Eigen::Quaterniond& begin,
-                  const Eigen::Quaterniond& end, Share share) {
+void TopDownPoints::assign(const StructurePoints& scan, const Eigen::Quaterniond& begin,
+                           const Eigen::Quaterniond& end, Subsample subsample) {
   for (std::vector<float>* part : {&x, &y}) part->resize(scan.s.size());
   s = scan.s;
   // Within one scan the turn is small: the middle of it serves all.
@@ -80,15 +80,15 @@ void Plan::assign(const Outline& scan, const Eigen::Quaterniond& begin,
       (kPerMetre * begin.slerp(0.5, end).toRotationMatrix().topRows<2>()).cast<float>();
   const float xx = R(0, 0), xy = R(0, 1), xz = R(0, 2);
   const float yx = R(1, 0), yy = R(1, 1), yz = R(1, 2);
-  const std::size_t n = count_in(share, s.size());
+  const std::size_t n = count_in(subsample, s.size());
   for (std::size_t k = 0; k < n; ++k) {
     x[k] = xx * scan.x_m[k] + xy * scan.y_m[k] + xz * scan.z_m[k];
     y[k] = yx * scan.x_m[k] + yy * scan.y_m[k] + yz * scan.z_m[k];
   }
 }
 
-void Plan::assign_turning(const Outline& scan, const Eigen::Quaterniond& begin,
-                          const Eigen::Quaterniond& end, Share share) {
+void TopDownPoints::assign_turning(const StructurePoints& scan, const Eigen::Quaterniond& begin,
+                                   const Eigen::Quaterniond& end, Subsample subsample) {
   constexpr std::size_t kInstants = 16;
   std::array<Eigen::Matrix<float, 2, 3>, kInstants> R;
   for (std::size_t k = 0; k < kInstants; ++k) {
@@ -97,7 +97,7 @@ void Plan::assign_turning(const Outline& scan, const Eigen::Quaterniond& begin,
   }
   for (std::vector<float>* part : {&x, &y}) part->resize(scan.s.size());
   s = scan.s;
-  const std::size_t n = count_in(share, s.size());
+  const std::size_t n = count_in(subsample, s.size());
   for (std::size_t k = 0; k < n; ++k) {
     const auto instant = static_cast<std::size_t>(s[k] * kInstants);
     const Eigen::Vector2f seen = R[std::min(instant, kInstants - 1)] *
@@ -107,23 +107,23 @@ void Plan::assign_turning(const Outline& scan, const Eigen::Quaterniond& begin,
   }
 }
 
-Footprint::Footprint(std::size_t most) : at_(most), taken_(kOutside + 1) { clear(); }
+TopDownGrid::TopDownGrid(std::size_t most) : at_(most), taken_(kOutside + 1) { clear(); }
 
-void Footprint::clear() {
+void TopDownGrid::clear() {
   if (++now_ == 0) {
     std::fill(taken_.begin(), taken_.end(), 0);
     now_ = 1;
   }
   taken_.back() = now_;  // what is outside never counts
-  cells_ = 0;
+  occupied_ = 0;
 }
 
-void Footprint::add(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
-                    Share share) {
-  const Way way(begin_m, end_m);
-  const std::size_t n = std::min(count_in(share, scan.s.size()), at_.size());
+void TopDownGrid::add(const TopDownPoints& scan, const Eigen::Vector2d& begin_m,
+                      const Eigen::Vector2d& end_m, Subsample subsample) {
+  const Sweep sweep(begin_m, end_m);
+  const std::size_t n = std::min(count_in(subsample, scan.s.size()), at_.size());
   std::int32_t* at = at_.data();
-  for (std::size_t k = 0; k < n; ++k) at[k] = way.cell_of(scan, k);
+  for (std::size_t k = 0; k < n; ++k) at[k] = sweep.cell_of(scan, k);
   std::uint8_t* taken = taken_.data();
   const std::uint8_t now = now_;
   int cells = 0;
@@ -131,40 +131,40 @@ void Footprint::add(const Plan& scan, const Eigen::Vector2d& begin_m, const Eige
     cells += static_cast<int>(taken[at[k]] != now);
     taken[at[k]] = now;
   }
-  cells_ += cells;
+  occupied_ += cells;
 }
 
-void Footprint::add(const Eigen::Vector2d& point_m, int around) {
-  const Eigen::Vector2f from = Way(point_m, point_m).begin;
+void TopDownGrid::add(const Eigen::Vector2d& point_m, int around) {
+  const Eigen::Vector2f from = Sweep(point_m, point_m).begin;
   for (int dy = -around; dy <= around; ++dy) {
     for (int dx = -around; dx <= around; ++dx) {
       std::uint8_t& taken = taken_[static_cast<std::size_t>(
           cell_at(from.x() + static_cast<float>(dx), from.y() + static_cast<float>(dy)))];
-      cells_ += static_cast<int>(taken != now_);
+      occupied_ += static_cast<int>(taken != now_);
       taken = now_;
     }
   }
 }
 
-void Footprint::aim(const Plan& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
-                    Share share, int margin) {
-  const Way way(begin_m, end_m);
-  const std::size_t n = std::min(count_in(share, scan.s.size()), at_.size());
-  aimed_ = 0;
+void TopDownGrid::place(const TopDownPoints& scan, const Eigen::Vector2d& begin_m,
+                        const Eigen::Vector2d& end_m, Subsample subsample, int margin) {
+  const Sweep sweep(begin_m, end_m);
+  const std::size_t n = std::min(count_in(subsample, scan.s.size()), at_.size());
+  placed_ = 0;
   for (std::size_t k = 0; k < n; ++k) {
-    const std::int32_t at = way.cell_of(scan, k);
+    const std::int32_t at = sweep.cell_of(scan, k);
     const std::int32_t x = at % kSide, y = at / kSide;
-    at_[aimed_] = at;
-    aimed_ += std::min(x, y) >= margin && std::max(x, y) < kSide - margin ? 1 : 0;
+    at_[placed_] = at;
+    placed_ += std::min(x, y) >= margin && std::max(x, y) < kSide - margin ? 1 : 0;
   }
 }
 
-int Footprint::returns_on(int x, int y) const {
+int TopDownGrid::hits(int x, int y) const {
   const std::uint8_t* taken = taken_.data() + std::ptrdiff_t{y} * kSide + x;
   const std::uint8_t now = now_;
-  int returns = 0;
-  for (std::size_t k = 0; k < aimed_; ++k) returns += static_cast<int>(taken[at_[k]] == now);
-  return returns;
+  int count = 0;
+  for (std::size_t k = 0; k < placed_; ++k) count += static_cast<int>(taken[at_[k]] == now);
+  return count;
 }
 
 }  // namespace lilo::core

@@ -1,0 +1,41 @@
+#include "core/motion/motion_state.hpp"
+
+#include <algorithm>
+
+namespace lilo::core {
+
+KnotInformation initial_information() {
+  constexpr double kPose = 1e-4;  // m, rad
+  constexpr double kSpeed_mps = 20.0, kClimb_mps = 0.5, kYaw_radps = 0.5, kTilt_radps = 0.1;
+  Knot sigma;
+  sigma << Vector6d::Constant(kPose), kTilt_radps, kTilt_radps, kYaw_radps, kSpeed_mps, kSpeed_mps,
+      kClimb_mps;
+  return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+}
+
+Prior predict(const MotionState& state, const ScanTiming& scan, const Vector6d& density,
+              int least_segments) {
+  const double duration_s = scan.span_s();
+  const double since_s = state.end_ns ? seconds_between(*state.end_ns, scan.end_ns) : duration_s;
+  Prior prior;
+  // Returns that were compensated all belong to the end: the trajectory reaches back to the last.
+  prior.span_s = scan.motion_compensated ? since_s : duration_s;
+  if (prior.span_s <= 0.0) prior.span_s = duration_s;
+  const double unseen_s = since_s - prior.span_s;
+  const double gap_s = unseen_s > kLongestGap_s ? 0.0 : std::max(0.0, unseen_s);
+  prior.T_begin = moved(state.T_odom_sensor, state.twist, gap_s);
+  prior.twist = state.twist;
+  prior.acceleration_density = density;
+  prior.begin_information = propagated(state.information, density, gap_s);
+  prior.segments = segments_for(density, prior.span_s, least_segments);
+  return prior;
+}
+
+Pose predicted_end(const Prior& prior) { return moved(prior.T_begin, prior.twist, prior.span_s); }
+
+MotionState predicted_state(const Prior& prior, std::int64_t end_ns) {
+  return {predicted_end(prior), prior.twist,
+          propagated(prior.begin_information, prior.acceleration_density, prior.span_s), end_ns};
+}
+
+}  // namespace lilo::core

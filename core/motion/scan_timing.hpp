@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+
+namespace lilo::core {
+
+/// When a scan was measured: its first and its last firing.
+struct ScanTiming {
+  std::int64_t start_ns = 0, end_ns = 0;
+  bool motion_compensated = false;  ///< all returns belong to the last firing already
+
+  /// First to last firing; that of 600 revolutions a minute where the stamps tell none.
+  [[nodiscard]] double span_s() const {
+    constexpr double kUsual_s = 0.1;
+    const double span_s = 1e-9 * static_cast<double>(end_ns - start_ns);
+    return span_s > 0.0 ? span_s : kUsual_s;
+  }
+  /// Whether no firing is missing between a scan that ended at `previous_end_ns` and this one.
+  [[nodiscard]] bool follows(std::int64_t previous_end_ns) const {
+    constexpr std::int64_t kNextFiring_ns = 1'000'000;
+    return start_ns - previous_end_ns < kNextFiring_ns;
+  }
+};
+
+inline double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
+  return 1e-9 * static_cast<double>(to_ns - from_ns);
+}
+
+}  // namespace lilo::core

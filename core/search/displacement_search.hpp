@@ -1,0 +1,72 @@
+#pragma once
+
+#include "core/map/cell_map.hpp"
+#include "core/motion/trajectory.hpp"
+#include "core/search/hypothesis.hpp"
+#include "core/search/top_down_grid.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <vector>
+
+namespace lilo::core {
+
+/// When the sensor did other than predicted: it turned and moved while it was unseen, so that the
+/// whole scan is displaced; or it began to turn within this scan.
+enum class Onset : std::uint8_t { before_scan, within_scan };
+
+/// How far a displacement may go, to either side.
+struct SearchRadius {
+  double along_m = 0.0, yaw_rad = 0.0;
+  double begin_yaw_rad = 0.0;  ///< for Onset::within_scan
+};
+
+/// Where in the map the sensor may be, when nothing told for a while how it moved.
+///
+/// Scan and map are seen from above: where the sensor is, the scan's structure falls on that of the
+/// map. Displacements all over the radius are scored on a map drawn thick, and those around the
+/// best of them on one drawn finer, with a quarter of the points. What is found is for alignments
+/// to begin from: of two walls that are alike, either may be right.
+///
+/// Not thread-safe; no allocation after construction.
+class DisplacementSearch {
+ public:
+  static constexpr std::size_t kMostFound = 3;
+  static constexpr SearchRadius kFarthest{12.5, std::numbers::pi, 0.0};
+
+  /// `most_features`: of one scan.
+  explicit DisplacementSearch(std::size_t most_features);
+
+  /// The structure within 128 m of `center_m` along either axis; a cell of it is 1.5 m at most.
+  void set_map(const CellMap& structure, const Eigen::Vector3d& center_m);
+
+  /// The likeliest displacements from where the scan was predicted to be, the best one first, all
+  /// unlike each other. Farther than kFarthest none is searched. Lives until the next call.
+  std::span<const Displacement> find(const std::vector<Feature>& features,
+                                     const Trajectory& predicted, const SearchRadius& radius,
+                                     Onset onset = Onset::before_scan);
+
+ private:
+  void try_all(const SearchRadius& radius);
+  void refine_best();
+  void choose();
+  void try_turned(const Displacement& turned, int farthest);
+  void turn(TopDownGrid& map, const Displacement& turned);
+  void score(const TopDownGrid& map, const Displacement& by);
+
+  Eigen::Vector2d center_m_ = Eigen::Vector2d::Zero();
+  TopDownGrid map_, thick_map_;
+  StructurePoints structure_;
+  TopDownPoints points_;
+  Pose begin_, end_;  // as predicted
+  Onset onset_ = Onset::before_scan;
+  std::vector<Hypothesis> hypotheses_;
+  std::array<Displacement, kMostFound> found_;
+  std::size_t found_count_ = 0;
+};
+
+}  // namespace lilo::core

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "core/motion/scan_timing.hpp"
+#include "core/pose.hpp"
+#include "core/search/hypothesis.hpp"
+#include "core/search/top_down_grid.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lilo::core {
+
+/// Whether the last scans agree better under another motion than the one tracked.
+///
+/// Where little structure is beside the road, one truck ahead tells more of the way along it than
+/// all posts together. When it drives off with the sensor, or without it, the alignment may follow
+/// the truck: what the truck tells fits, and the posts count as moving. But laid over each other as
+/// they were tracked, the scans of half a second then show a trail of everything that is fixed, and
+/// share more cells under another motion, along the road.
+///
+/// Not thread-safe; no allocation after construction.
+class MotionCheck {
+ public:
+  /// `most_features`: of one scan.
+  explicit MotionCheck(std::size_t most_features);
+
+  void clear();
+  /// The next scan as it was tracked. Where returns were compensated, both poses are the last one.
+  void add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
+           const ScanTiming& timing);
+  /// Once after each add(). Whether another motion was significantly better, now and the last time.
+  /// `axis`: horizontal unit vector along what surrounds the sensor, or across it.
+  bool is_refuted(const Eigen::Vector2d& axis);
+
+ private:
+  static constexpr std::size_t kScans = 6;
+  struct Scan {
+    TopDownPoints points;
+    Eigen::Vector2d begin_m, end_m;
+    double span_s = 0.0;
+    std::int64_t end_ns = 0;
+  };
+  void lay(const Scan& scan, const Displacement& more, Subsample subsample);
+  int occupied_under(const Displacement& more, Subsample subsample);
+  int least_occupied(const Eigen::Vector2d& axis, Subsample subsample);
+  bool is_clearly_better(const Eigen::Vector2d& axis);
+
+  std::array<Scan, kScans> scans_;
+  std::size_t count_ = 0, newest_ = 0;
+  int times_refuted_ = 0;      // on end
+  StructurePoints structure_;  // of the newest
+  TopDownGrid grid_;
+};
+
+}  // namespace lilo::core

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "core/feature.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+/// How well scans agree with each other, or with the map, under a motion that is only supposed.
+namespace lilo::core {
+
+/// The structure features of a scan, each in the sensor's frame at its firing. An array per
+/// coordinate, so that several are moved at a time. Every fourth comes first, then the others.
+struct StructurePoints {
+  std::vector<float> x_m, y_m, z_m;
+  std::vector<float> s;  ///< as Feature::s
+
+  static constexpr std::size_t kParts = 4;
+  /// How many of `size` come before `part`: all for kParts.
+  static std::size_t before(std::size_t part, std::size_t size);
+  void reserve(std::size_t size);
+  /// Leaves ground out: it looks the same at every speed.
+  void assign(const std::vector<Feature>& features);
+};
+
+/// How many of the points are used. Where motions differ clearly, a quarter tells.
+enum class Subsample : std::uint8_t { quarter, all };
+
+/// Structure points turned to the axes of the odometry and seen from above, in cells from the
+/// sensor. Motions that differ in speed alone share them.
+struct TopDownPoints {
+  std::vector<float> x, y;
+  std::vector<float> s;  ///< as Feature::s
+
+  void reserve(std::size_t size);
+  /// Of a scan in which the sensor turned from `begin` to `end`. Points outside the subsample keep
+  /// the places they had.
+  void assign(const StructurePoints& scan, const Eigen::Quaterniond& begin,
+              const Eigen::Quaterniond& end, Subsample subsample = Subsample::all);
+  /// The same for a sensor that may turn fast: each point by the rotation at its firing.
+  void assign_turning(const StructurePoints& scan, const Eigen::Quaterniond& begin,
+                      const Eigen::Quaterniond& end, Subsample subsample);
+};
+
+/// A square grid of 256 m seen from above, on which scans are laid as a motion says. Trunks and
+/// walls of several scans share cells under the true motion and smear under any other. Needs
+/// neither a map nor an initial guess, and hardly depends on how many rings hit a thing.
+///
+/// Not thread-safe; no allocation after construction.
+class TopDownGrid {
+ public:
+  static constexpr int kPerMetre = 2;  ///< cells: as wide as a trunk or a post with its blur
+
+  /// `most`: points of one scan.
+  explicit TopDownGrid(std::size_t most);
+
+  /// Cells occupied by all scans added since clear().
+  [[nodiscard]] int occupied() const { return occupied_; }
+  void clear();
+
+  /// Adds one scan that lasted from `begin_m` to `end_m`, at constant velocity. What lies 128 m, to
+  /// a cell, from the origin along an axis is left out, and so are more than `most` points.
+  void add(const TopDownPoints& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
+           Subsample subsample = Subsample::all);
+  /// Adds one point, and all cells within `around` of its own.
+  void add(const Eigen::Vector2d& point_m, int around);
+  /// Remembers where the points of a scan fall, but for those within `margin` cells of the end.
+  void place(const TopDownPoints& scan, const Eigen::Vector2d& begin_m,
+             const Eigen::Vector2d& end_m, Subsample subsample, int margin);
+  /// How many of the points placed fall on occupied cells, moved by so many cells, at most
+  /// `margin`.
+  [[nodiscard]] int hits(int x, int y) const;
+
+ private:
+  std::vector<std::int32_t> at_;
+  std::size_t placed_ = 0;  // how many of them place() remembered
+  // Of each cell, at which count of clear() it was last taken up. Nothing need be emptied so, and
+  // no cell waits for what was just written of its neighbour, as bits of one word would.
+  std::vector<std::uint8_t> taken_;
+  std::uint8_t now_ = 0;
+  int occupied_ = 0;
+};
+
+}  // namespace lilo::core

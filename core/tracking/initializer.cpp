@@ -1,0 +1,200 @@
+#include "core/tracking/initializer.hpp"
+
+#include "core/image/selection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lilo::core {
+namespace {
+
+// What is believed of a velocity that was searched, 1 sigma: of a robot that is switched on
+// standing, of one that moves, and of a motion near the one tracked.
+constexpr double kStationary_mps = 0.5, kMoving_mps = 1.0, kTracked_mps = 0.25;
+
+/// Whether a motion is not the one tracked.
+bool is_elsewhere(const Twist& twist, const Twist& tracked) {
+  constexpr double kApart_mps = 0.5, kApart_radps = 0.1;
+  return differ(twist, tracked, kApart_mps, kApart_radps);
+}
+
+}  // namespace
+
+Initializer::Initializer(std::size_t most_features, std::size_t most_for_map)
+    : most_for_map_(most_for_map), search_(most_features) {
+  for (Remembered& scan : scans_) {
+    scan.for_map.reserve(most_for_map);
+    scan.selected.reserve(most_features);
+  }
+}
+
+void Initializer::clear() {
+  count_ = 0;
+  search_.clear();
+}
+
+bool Initializer::must_begin_again(const ScanTiming& scan, std::size_t feature_count,
+                                   const MotionState& state) const {
+  if (count_ == 0 || !state.end_ns) return false;
+  // Half of a revolution: packets were lost, or the recording began in the middle of it.
+  if (count_ == 1 && feature_count > 2 * scans_[0].feature_count) return true;
+  // Long ago: only a sensor at rest may be supposed to have gone on as it did.
+  const double unseen_s = std::abs(seconds_between(*state.end_ns, scan.start_ns));
+  return unseen_s > kShortGap_s && (count_ == 1 || !is_stationary_);
+}
+
+bool Initializer::add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
+                      LocalOdometry& local) {
+  finest_level_ = scan.finest_level;
+  Remembered& one = scans_[count_++];
+  one.timing = scan.timing;
+  one.feature_count = all.size();
+  thin_out(all, most_for_map_, one.for_map);
+  one.selected.assign(scan.features->begin(), scan.features->end());
+  search_.add(scan.timing, *scan.features);
+  const Prior prior = local.predict(scan.timing);
+  note_track(count_ - 1, prior.T_begin, predicted_end(prior));
+  if (count_ <= 2) return false;
+  const bool is_known =
+      is_stationary_ ? recheck_stationary(local) : recheck_moving(was_lost, local);
+  if (is_known) clear();
+  return is_known;
+}
+
+void Initializer::set_track(const Pose& T_begin, const Pose& T_end) {
+  note_track(count_ - 1, T_begin, T_end);
+}
+
+void Initializer::note_track(std::size_t k, const Pose& T_begin, const Pose& T_end) {
+  // Returns that were compensated all belong to the end.
+  tracks_[k] = {scans_[k].timing.motion_compensated ? T_end : T_begin, T_end};
+}
+
+/// The constant motion nearest to the track so far.
+Twist Initializer::tracked_twist() const {
+  const double so_far_s =
+      seconds_between(scans_[0].timing.end_ns, scans_[count_ - 1].timing.end_ns);
+  return twist_between({}, tracks_[count_ - 1].T_end, so_far_s);
+}
+
+/// Adds what is believed of the speed along the ground to what the prediction knows of it.
+void Initializer::add_velocity_prior(const Start& start, Prior& prior) {
+  const Eigen::Vector3d predicted_mps = prior.T_begin.rotation * prior.twist.linear_mps;
+  const double weight = 1.0 / (start.sigma_mps * start.sigma_mps);
+  KnotInformation both = prior.begin_information;
+  both.diagonal().segment<2>(9).array() += weight;
+  Knot sum = prior.begin_information * prior.begin_mean;
+  sum.segment<2>(9) += weight * (start.velocity_mps - predicted_mps).head<2>();
+  prior.begin_mean = both.ldlt().solve(sum);
+  prior.begin_information = both;
+}
+
+Initializer::Start Initializer::search() {
+  const MotionSearch::Result found = search_.find();
+  is_unambiguous_ = found.is_unambiguous;
+  return {found.twist, found.twist.linear_mps, found.moves ? kMoving_mps : kStationary_mps,
+          found.moves};
+}
+
+/// Aligns the second scan when the sensor moved by about `start.twist` during both: the first one,
+/// which alone makes the map, is deskewed by it.
+Solution Initializer::try_start(const Start& start, LocalOdometry& local) {
+  local.rewind(scans_[0].timing);
+  Prior prior = local.predict(scans_[1].timing);
+  Trajectory first;
+  first.twist = start.twist;
+  first.span_s = scans_[0].timing.span_s();
+  first.T_begin = moved({}, start.twist, -first.span_s);
+  first.knots = Unknowns::Zero(Eigen::Index{kKnotSize} * (first.segments + 1));
+  note_track(0, first.T_begin, {});
+  local.begin_map_of(scans_[0].for_map, first, finest_level_);
+  prior.twist = start.twist;
+  // However often it is refined, what was believed at first stays believed.
+  add_velocity_prior(start, prior);
+  return local.align(scans_[1].selected, prior);
+}
+
+/// Until the motion found is the motion assumed. What the first scan is deskewed by too much the
+/// second lacks, and the other way round: half of the way at first, or they would never meet. From
+/// then on as far as the last step tells to go (Barzilai and Borwein, 1988): compensated returns
+/// need no deskewing, and all of the way is right.
+Solution Initializer::refine(Start& start, LocalOdometry& local) {
+  constexpr double kSpeedEnough_mps = 0.01;
+  constexpr int kMaxRounds = 15;
+  double part = 0.5;
+  Eigen::Vector3d step_mps = Eigen::Vector3d::Zero(), last_lack_mps = step_mps;
+  Solution solution = try_start(start, local);
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const Twist found = twist_between({}, solution.trajectory.end(), solution.trajectory.span_s);
+    const Eigen::Vector3d lack_mps = found.linear_mps - start.twist.linear_mps;
+    if (lack_mps.norm() < kSpeedEnough_mps) break;
+    const Eigen::Vector3d less_mps = last_lack_mps - lack_mps;
+    if (round > 0 && !less_mps.isZero(0.0)) {
+      part = std::clamp(step_mps.dot(less_mps) / less_mps.squaredNorm(), 0.25, 1.0);
+    }
+    step_mps = part * lack_mps;
+    last_lack_mps = lack_mps;
+    start.twist.linear_mps += step_mps;
+    start.twist.angular_radps += part * (found.angular_radps - start.twist.angular_radps);
+    solution = try_start(start, local);
+  }
+  return solution;
+}
+
+Solution Initializer::align_second(bool may_be_stationary, LocalOdometry& local) {
+  Start start = search();
+  is_stationary_ = is_unambiguous_ && !start.moves && may_be_stationary;
+  Solution solution = refine(start, local);
+  if (is_stationary_) local.assume_standing();
+  assumed_ = start.twist;
+  return solution;
+}
+
+/// Takes all scans but the newest through a start, as though it had been known.
+void Initializer::replay(Start start, LocalOdometry& local) {
+  Solution solution = refine(start, local);
+  for (std::size_t k = 1; k + 1 < count_; ++k) {
+    Prior prior = local.predict(scans_[k].timing);
+    if (k > 1) {
+      add_velocity_prior(start, prior);
+      solution = local.align(scans_[k].selected, prior);
+    }
+    local.accept(scans_[k].timing, solution);
+    note_track(k, solution.trajectory.at(0.0), solution.trajectory.end());
+    local.grow_map(scans_[k].timing, scans_[k].for_map, solution, MapUse::keyframe, finest_level_);
+  }
+}
+
+/// The motion that all scans so far speak for: near the track, once it is clear that there is none
+/// like it elsewhere.
+Initializer::Start Initializer::best_start(const Twist& tracked, bool was_lost) {
+  if (!is_unambiguous_ || was_lost) return search();
+  // What is elsewhere with all points is, but for chance, with a quarter of them too.
+  Twist twist = search_.refine(tracked, Subsample::quarter);
+  if (is_elsewhere(twist, tracked)) twist = search_.refine(tracked, Subsample::all);
+  return {twist, twist.linear_mps, kTracked_mps, true};
+}
+
+/// A sensor that was taken to stand may have crept, where a step of a scan is less than the scans
+/// can tell: a map so begun is smeared by it, and holds the sensor back later.
+bool Initializer::recheck_stationary(LocalOdometry& local) {
+  constexpr std::size_t kEnough = 4;  // scans
+  if (count_ < kEnough) return false;
+  const Twist tracked = tracked_twist();
+  if (is_elsewhere(assumed_, tracked))
+    replay({tracked, tracked.linear_mps, kTracked_mps, true}, local);
+  return true;
+}
+
+/// Puts the odometry on another start where all scans so far speak for it.
+bool Initializer::recheck_moving(bool was_lost, LocalOdometry& local) {
+  const Twist tracked = tracked_twist();
+  const Start other = best_start(tracked, was_lost);
+  if (is_elsewhere(other.twist, tracked) &&
+      search_.is_better_than_track(other.twist, std::span(tracks_).first(count_))) {
+    replay(other, local);
+  }
+  return count_ == MotionSearch::kMostScans;
+}
+
+}  // namespace lilo::core

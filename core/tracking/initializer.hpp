@@ -1,0 +1,89 @@
+#pragma once
+
+#include "core/search/motion_search.hpp"
+#include "core/tracking/local_odometry.hpp"
+#include "core/tracking/observation.hpp"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace lilo::core {
+
+/// Finds the motion that the sensor is in when a map is begun.
+///
+/// One scan alone tells no motion, and is bent by it. Two scans mostly tell (MotionSearch): the
+/// motion under which they agree best is refined by aligning the second with the first until the
+/// motion found is the motion assumed. Where another motion fits nearly as well (a road with few
+/// things beside it), more scans are asked, and the map is begun again where they contradict:
+///
+///     1st scan      becomes the map
+///     2nd           motion searched and refined; stationary or moving, clear or not
+///     3rd to 6th    moving: is another motion better by now? then all scans are replayed with it
+///     4th           stationary: did it creep after all? then the same
+///
+/// Not thread-safe; no allocation after construction.
+class Initializer {
+ public:
+  /// `most_features`: of one scan that is aligned; `most_for_map`: of one that enters the map.
+  Initializer(std::size_t most_features, std::size_t most_for_map);
+
+  /// Scans remembered, the newest included. 0 before the first and when the motion is known.
+  [[nodiscard]] std::size_t scans() const { return count_; }
+  /// Found to be stationary, which is believed at once.
+  [[nodiscard]] bool is_stationary() const { return is_stationary_; }
+
+  /// Whether the scans remembered are no basis for this next one: it saw far more than the first,
+  /// which was a fragment, or it comes too late.
+  [[nodiscard]] bool must_begin_again(const ScanTiming& scan, std::size_t feature_count,
+                                      const MotionState& state) const;
+  void clear();
+
+  /// Takes the next scan, before it is aligned, and puts `local` on another motion where all
+  /// scans speak for one. `all`: its features before selection. `was_lost`: the scan before found
+  /// nothing of itself in the map. Returns whether the motion is known now; then the scans are
+  /// forgotten, and this one can be aligned like any other.
+  bool add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
+           LocalOdometry& local);
+  /// Aligns the second scan, after add(). `may_be_stationary`: believe a standstill at once, as
+  /// where the sensor was just switched on.
+  Solution align_second(bool may_be_stationary, LocalOdometry& local);
+  /// Where the newest scan was tracked.
+  void set_track(const Pose& T_begin, const Pose& T_end);
+
+ private:
+  struct Remembered {
+    ScanTiming timing;
+    std::size_t feature_count = 0;  ///< before selection
+    std::vector<Feature> for_map, selected;
+  };
+  /// A motion the sensor may have, and what is believed of its speed along the ground.
+  struct Start {
+    Twist twist;  ///< as refined so far
+    Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
+    double sigma_mps = 0.0;
+    bool moves = false;
+  };
+  [[nodiscard]] Twist tracked_twist() const;
+  void note_track(std::size_t k, const Pose& T_begin, const Pose& T_end);
+  static void add_velocity_prior(const Start& start, Prior& prior);
+  Start search();
+  Start best_start(const Twist& tracked, bool was_lost);
+  Solution try_start(const Start& start, LocalOdometry& local);
+  Solution refine(Start& start, LocalOdometry& local);
+  void replay(Start start, LocalOdometry& local);
+  bool recheck_stationary(LocalOdometry& local);
+  bool recheck_moving(bool was_lost, LocalOdometry& local);
+
+  std::size_t most_for_map_;
+  std::array<Remembered, MotionSearch::kMostScans> scans_;
+  std::array<MotionSearch::Track, MotionSearch::kMostScans> tracks_;  // the newest as predicted
+  std::size_t count_ = 0;
+  MotionSearch search_;
+  std::size_t finest_level_ = LocalMaps::kUsual;  // of the newest scan
+  bool is_unambiguous_ = false;                   // no other motion fits nearly as well
+  bool is_stationary_ = false;
+  Twist assumed_;  // by the second scan
+};
+
+}  // namespace lilo::core

@@ -1,0 +1,103 @@
+#include "core/tracking/keyframe_map.hpp"
+
+#include "core/image/selection.hpp"
+
+#include <array>
+
+namespace lilo::core {
+namespace {
+
+constexpr int kYoung = 5;  // keyframes of a map that may know too little
+
+LocalMaps make_cells(const DefaultConfig& c) {
+  const auto map = [&](FeatureKind kind, double cell_m, int capacity) {
+    return CellMapConfig{.cell_m = static_cast<float>(cell_m),
+                         .noise_m = static_cast<float>(c.noise_m),
+                         .level = kind == FeatureKind::ground,
+                         .capacity = capacity};
+  };
+  const auto level = [&](double cell_m, int capacity) {
+    return std::array{map(FeatureKind::ground, cell_m, capacity),
+                      map(FeatureKind::structure, cell_m, capacity)};
+  };
+  // Cells of a surface grow fewer with the square of their size; a quarter leaves room.
+  return LocalMaps({level(0.5 * c.cell_m, c.map_cells / 4), level(c.cell_m, c.map_cells),
+                    level(c.coarse_cell_m, c.map_cells / 4)});
+}
+
+}  // namespace
+
+KeyframeMap::KeyframeMap(const DefaultConfig& config)
+    : config_(config), cells_(make_cells(config)) {
+  const auto most = static_cast<std::size_t>(config.map_features);
+  held_.features.reserve(most);
+  points_.reserve(most);
+}
+
+void KeyframeMap::clear() {
+  cells_.clear();
+  held_.is_waiting = false;
+  T_odom_keyframe_ = {};
+  keyframes_ = 0;
+}
+
+void KeyframeMap::begin(const std::vector<Feature>& features, const Trajectory& trajectory,
+                        std::size_t finest_level) {
+  clear();
+  hold(features, trajectory, 0);
+  insert_held(finest_level);
+  keyframes_ = 1;
+}
+
+bool KeyframeMap::grow(const AlignedScan& scan) {
+  cells_.forget_beyond(scan.T_odom_sensor.translation_m, config_.map_radius_m);
+  if (held_.is_waiting) {
+    const bool continues = scan.timing.motion_compensated || scan.timing.follows(held_.end_ns);
+    if (continues && scan.use != MapUse::none) {
+      held_.trajectory.knots.tail<kKnotSize>() += scan.solution.trajectory.knots.head<kKnotSize>();
+    }
+    insert_held(scan.finest_level);
+  }
+  if (scan.use != MapUse::keyframe || !is_due(scan)) return false;
+  hold(scan.features, scan.solution.trajectory, scan.timing.end_ns);
+  // While there is little else, a scan late is too late.
+  if (keyframes_ < kYoung) insert_held(scan.finest_level);
+  ++keyframes_;
+  T_odom_keyframe_ = scan.T_odom_sensor;
+  return true;
+}
+
+/// When the sensor has moved; and while the map knows too little. One scan of an open country fills
+/// few cells with enough points; standing still adds them.
+bool KeyframeMap::is_due(const AlignedScan& scan) const {
+  constexpr double kKnowsEnough = 0.5;
+  if (keyframes_ == 0) return true;
+  const Solution& solution = scan.solution;
+  if (keyframes_ < kYoung && solution.matched < kKnowsEnough * solution.asked) return true;
+  const Pose moved_by = T_odom_keyframe_.inverse() * scan.T_odom_sensor;
+  return moved_by.translation_m.norm() >= config_.keyframe_m ||
+         so3_log(moved_by.rotation).norm() >= config_.keyframe_rad;
+}
+
+void KeyframeMap::hold(const std::vector<Feature>& features, const Trajectory& trajectory,
+                       std::int64_t end_ns) {
+  thin_out(features, static_cast<std::size_t>(config_.map_features), held_.features);
+  held_.trajectory = trajectory;
+  held_.end_ns = end_ns;
+  held_.is_waiting = true;
+}
+
+void KeyframeMap::insert_held(std::size_t finest_level) {
+  held_.is_waiting = false;
+  sample(held_.trajectory, sampled_);
+  points_.clear();
+  for (const Feature& f : held_.features) {
+    points_.push_back(
+        {sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m}).cast<double>() + sampled_.origin_m(f.s),
+         sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m}), f.kind});
+  }
+  cells_.insert(points_, finest_level);
+  cells_.end_keyframe();
+}
+
+}  // namespace lilo::core

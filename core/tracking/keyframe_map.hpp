@@ -1,0 +1,75 @@
+#pragma once
+
+#include "core/map/local_maps.hpp"
+#include "core/motion/scan_timing.hpp"
+#include "core/motion/trajectory.hpp"
+#include "core/odometry_config.hpp"
+#include "core/registration/solver.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lilo::core {
+
+/// What a scan is to the map.
+enum class MapUse : std::uint8_t {
+  none,      ///< it was not aligned
+  end_only,  ///< aligned, but perhaps wrongly: it tells where the scan before it ended
+  keyframe,  ///< it may enter the map
+};
+
+/// A scan that was aligned with the map.
+struct AlignedScan {
+  ScanTiming timing;
+  const std::vector<Feature>& features;
+  const Solution& solution;
+  Pose T_odom_sensor;  ///< of its last firing
+  MapUse use = MapUse::keyframe;
+  std::size_t finest_level = LocalMaps::kUsual;  ///< of the map, for its surroundings
+};
+
+/// The local map and how it grows: by keyframes, which enter one scan late. The end of a scan is
+/// seen from one side only; the next scan sees it from the other and puts it right before its
+/// points enter the map. It forgets what is far away.
+///
+/// Not thread-safe; no allocation after construction.
+class KeyframeMap {
+ public:
+  explicit KeyframeMap(const DefaultConfig& config);
+
+  [[nodiscard]] LocalMaps& cells() { return cells_; }
+  [[nodiscard]] const LocalMaps& cells() const { return cells_; }
+  [[nodiscard]] int keyframes() const { return keyframes_; }
+
+  /// Empties the map.
+  void clear();
+  /// Empties the map and makes one scan its first keyframe, at once. Its pose is the origin.
+  void begin(const std::vector<Feature>& features, const Trajectory& trajectory,
+             std::size_t finest_level);
+  /// Takes the next scan. Returns whether it became a keyframe.
+  bool grow(const AlignedScan& scan);
+
+ private:
+  /// A keyframe, until the next scan has told where it ended.
+  struct Held {
+    std::vector<Feature> features;
+    Trajectory trajectory;
+    std::int64_t end_ns = 0;
+    bool is_waiting = false;
+  };
+  [[nodiscard]] bool is_due(const AlignedScan& scan) const;
+  void hold(const std::vector<Feature>& features, const Trajectory& trajectory,
+            std::int64_t end_ns);
+  void insert_held(std::size_t finest_level);
+
+  DefaultConfig config_;
+  LocalMaps cells_;
+  Held held_;
+  Sampled sampled_;                       // of the keyframe that is inserted
+  std::vector<LocalMaps::Point> points_;  // the same
+  Pose T_odom_keyframe_;
+  int keyframes_ = 0;
+};
+
+}  // namespace lilo::core

@@ -1,0 +1,93 @@
+#include "core/tracking/local_odometry.hpp"
+
+#include <Eigen/LU>
+
+namespace lilo::core {
+namespace {
+
+SolverConfig solver_config(const DefaultConfig& c) {
+  return {.max_iterations = c.max_iterations,
+          .ground_kernel = static_cast<float>(c.ground_kernel),
+          .structure_kernel = static_cast<float>(c.structure_kernel),
+          .data_weight = static_cast<float>(c.data_weight)};
+}
+
+Vector6d nominal_density(const DefaultConfig& c) {
+  Vector6d density;
+  density << c.roll_pitch_density, c.roll_pitch_density, c.yaw_density,
+      Eigen::Vector3d::Constant(c.translation_density);
+  return density;
+}
+
+}  // namespace
+
+LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_features)
+    : solver_(solver_config(config), most_features),
+      map_(config),
+      process_noise_(nominal_density(config)),
+      uncertainty_(config.data_weight),
+      least_segments_(config.segments) {}
+
+Solution LocalOdometry::align_moving_or_standing(const std::vector<Feature>& features,
+                                                 const Prior& prior, std::size_t finest_level) {
+  Solution moving = align(features, prior, finest_level);
+  if (!standing_.is_likely()) return moving;
+  Solution standing = align(features, standing_.hypothesis(prior), finest_level);
+  return fits_as_well(standing.structure_inliers, moving.structure_inliers) ? standing : moving;
+}
+
+void LocalOdometry::accept(const ScanTiming& scan, const Solution& solution) {
+  const Trajectory& trajectory = solution.trajectory;
+  move_to({trajectory.end(), trajectory.end_twist(), solution.end_information, scan.end_ns});
+  uncertainty_.learn(solution.design_effect);
+}
+
+void LocalOdometry::accept_prediction(const ScanTiming& scan, const Prior& prior) {
+  move_to(predicted_state(prior, scan.end_ns));
+}
+
+void LocalOdometry::move_to(const MotionState& state) {
+  uncertainty_.move(state.T_odom_sensor.translation_m - state_.T_odom_sensor.translation_m);
+  state_ = state;
+}
+
+WeakDirections LocalOdometry::find_weak_directions(const ScanTiming& scan,
+                                                   const Solution& solution) {
+  const WeakDirections weak = weak_directions(
+      solution.data_information, solution.motion_information, state_.T_odom_sensor.rotation);
+  uncertainty_.learn(weak, state_, process_noise_.density(), scan.span_s());
+  return weak;
+}
+
+void LocalOdometry::observe_noise(const ScanTiming& scan, const Solution& solution) {
+  process_noise_.observe(solution.trajectory.at(0.5),
+                         scan.start_ns + (scan.end_ns - scan.start_ns) / 2,
+                         solution.data_information.inverse().diagonal());
+}
+
+void LocalOdometry::grow_map(const ScanTiming& scan, const std::vector<Feature>& features,
+                             const Solution& solution, MapUse use, std::size_t finest_level) {
+  if (map_.grow({scan, features, solution, state_.T_odom_sensor, use, finest_level})) {
+    uncertainty_.add_keyframe(state_, map_.keyframes());
+  }
+}
+
+Pose LocalOdometry::begin_map() {
+  const Pose at = state_.T_odom_sensor;
+  uncertainty_.begin_map(state_);
+  process_noise_.interrupt();
+  standing_.end();
+  state_ = {};
+  map_.clear();
+  return at;
+}
+
+void LocalOdometry::rewind(const ScanTiming& first) {
+  uncertainty_.rewind();
+  process_noise_.interrupt();
+  standing_.end();
+  state_ = {};
+  state_.end_ns = first.end_ns;
+}
+
+}  // namespace lilo::core

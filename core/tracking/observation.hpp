@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/feature.hpp"
+#include "core/motion/scan_timing.hpp"
+#include "core/scan.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace lilo::core {
+
+/// A scan with fewer features than this says too little to be aligned.
+inline constexpr std::size_t kMinFeatures = 100;
+
+/// What the tracker looks at of one scan.
+struct Observation {
+  ScanTiming timing;
+  const std::vector<Feature>* features = nullptr;  ///< those selected for alignment
+  double structure = 0.0;                          ///< how many of them are structure
+  std::size_t finest_level = 0;                    ///< of the map, which these surroundings ask for
+  bool is_complete = false;                        ///< Scan::complete
+
+  [[nodiscard]] bool says_enough() const { return features->size() >= kMinFeatures; }
+};
+
+/// `selected` must outlive the result.
+Observation observe(const Scan& scan, const std::vector<Feature>& selected);
+
+}  // namespace lilo::core

@@ -1,0 +1,47 @@
+#include "core/tracking/pose_uncertainty.hpp"
+
+#include <Eigen/LU>
+
+namespace lilo::core {
+
+void PoseUncertainty::begin_map(const MotionState& state) {
+  drift_.begin(covariance(state));  // the sensor's axes are the new map's
+}
+
+void PoseUncertainty::learn(const Vector6d& design_effect) {
+  constexpr double kNewest = 0.1;  // weight of a scan in the running mean
+  design_effect_ += kNewest * (design_effect.cwiseMax(kLeastDesignEffect) - design_effect_);
+}
+
+void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {
+  drift_.inherit(of_alignment(state), state.T_odom_sensor.rotation, keyframes);
+}
+
+void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state,
+                            const Vector6d& density, double span_s) {
+  constexpr double kMostlyTurns = 0.3;
+  const Eigen::Vector3d along = weak.all[0].direction.head<3>();  // m of a unit of rad and m
+  if (weak.count == 0 || along.norm() < kMostlyTurns) {
+    drift_.see(span_s);
+  } else {
+    drift_.coast(state.T_odom_sensor.rotation * along.normalized(), density.segment<2>(3).mean(),
+                 span_s);
+  }
+}
+
+/// Against the map, in the odometry's axes.
+Matrix6d PoseUncertainty::of_alignment(const MotionState& state) const {
+  // The error of a cell is the same for all scans that are matched with it: so many of them count
+  // as one. What is the same for longer is for Drift.
+  constexpr double kScansInView = 3.0;
+  const double unit = kScansInView * data_weight_;
+  const Vector6d scale = (unit * design_effect_).cwiseSqrt();
+  return scale.asDiagonal() * state.information.inverse().topLeftCorner<6, 6>() *
+         scale.asDiagonal();
+}
+
+Matrix6d PoseUncertainty::covariance(const MotionState& state) const {
+  return in_sensor_axes(drift_.covariance() + of_alignment(state), state.T_odom_sensor.rotation);
+}
+
+}  // namespace lilo::core

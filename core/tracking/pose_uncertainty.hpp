@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/motion/motion_state.hpp"
+#include "core/registration/weak_directions.hpp"
+#include "core/tracking/drift.hpp"
+
+namespace lilo::core {
+
+/// The covariance of the pose: that of the alignment with the map, scaled by how much residuals
+/// vary from azimuth to azimuth, and what the map has drifted. Rotation then translation.
+class PoseUncertainty {
+ public:
+  /// `data_weight`: of a residual (SolverConfig).
+  explicit PoseUncertainty(double data_weight) : data_weight_(data_weight) {}
+
+  /// Another map begins where the sensor is.
+  void begin_map(const MotionState& state);
+  /// The map in force begins once more.
+  void rewind() { drift_.rewind(); }
+  /// A scan was aligned (Solution::design_effect).
+  void learn(const Vector6d& design_effect);
+  /// What a scan of that duration told too little of (sensor's axes); `density`: process noise.
+  void learn(const WeakDirections& weak, const MotionState& state, const Vector6d& density,
+             double span_s);
+  /// The sensor has moved on.
+  void move(const Eigen::Vector3d& by_m) { drift_.move(by_m); }
+  /// The last scan has become a keyframe of a map of so many.
+  void add_keyframe(const MotionState& state, int keyframes);
+
+  /// Of the pose since the first scan, in the sensor's axes.
+  [[nodiscard]] Matrix6d covariance(const MotionState& state) const;
+
+ private:
+  // A simulation without noise is no reason to be sure.
+  static constexpr double kLeastDesignEffect = 0.05;
+  [[nodiscard]] Matrix6d of_alignment(const MotionState& state) const;
+
+  double data_weight_;
+  Vector6d design_effect_ = Vector6d::Constant(kLeastDesignEffect);  // mean of the last second
+  Drift drift_;
+};
+
+}  // namespace lilo::core

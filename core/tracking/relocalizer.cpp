@@ -1,0 +1,149 @@
+#include "core/tracking/relocalizer.hpp"
+
+#include "core/registration/weak_directions.hpp"
+#include "core/search/search_constants.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lilo::core {
+namespace {
+
+// What a vehicle may change of its motion unseen.
+constexpr double kAcceleration_mps2 = 4.0, kTurn_radps = 1.0;
+// How far a turn within a scan may go; and where the last scan was doubtful as well, so that the
+// sensor may have gone astray before it.
+constexpr SearchRadius kSudden{0.0, 0.8, 0.0}, kSuddenBefore{0.0, 1.2, 0.4};
+// How well a place is known that was searched, 1 sigma.
+constexpr double kPlace_m = 0.5, kTurned_rad = 0.05;
+// Alignments nearer to each other came to the same place.
+constexpr double kSame_m = 1.0, kSame_rad = 0.1;
+constexpr double kMinGround = 50.0;  // sum of robust weights; structure leaves height and tilt open
+
+double inverse_square(double sigma) { return 1.0 / (sigma * sigma); }
+
+bool is_within(const Pose& T, double along_m, double turned_rad) {
+  return T.translation_m.norm() < along_m && so3_log(T.rotation).norm() < turned_rad;
+}
+
+bool fits_less(const Solution& a, const Solution& b) {
+  return a.structure_inliers < b.structure_inliers;
+}
+
+bool fits_significantly_better(const Solution& a, const Solution& b) {
+  return is_significant(a.structure_inliers, b.structure_inliers, search::kClearly);
+}
+
+/// Of a scan that ended about there; of its motion nothing is known.
+Prior prior_at(const Pose& T_end, Prior prior) {
+  prior.T_begin = moved(T_end, prior.twist, -prior.span_s);
+  prior.begin_information = initial_information();
+  prior.begin_information.diagonal().head<3>().setConstant(inverse_square(kTurned_rad));
+  prior.begin_information.diagonal().segment<3>(3).setConstant(inverse_square(kPlace_m));
+  return prior;
+}
+
+/// Of a scan that began where it was predicted to, and ended displaced.
+Prior prior_turned(const Displacement& by, bool may_begin_elsewhere, Prior prior) {
+  constexpr double kRate_radps = 1.0, kSpeed_mps = 1.0;  // 1 sigma
+  const Pose T_end = displaced(predicted_end(prior), by);
+  prior.T_begin = displaced(prior.T_begin, {by.along_m, by.begin_yaw_rad, by.begin_yaw_rad});
+  prior.twist = twist_between(prior.T_begin, T_end, prior.span_s);
+  Matrix6d of_pose = prior.begin_information.inverse().topLeftCorner<6, 6>();
+  if (may_begin_elsewhere) {
+    of_pose.diagonal().head<3>().array() += kTurned_rad * kTurned_rad;
+    of_pose.diagonal().tail<3>().array() += kPlace_m * kPlace_m;
+  }
+  prior.begin_information.setZero();
+  prior.begin_information.topLeftCorner<6, 6>() = of_pose.inverse();
+  prior.begin_information.diagonal().segment<3>(6).setConstant(inverse_square(kRate_radps));
+  prior.begin_information.diagonal().tail<3>().setConstant(inverse_square(kSpeed_mps));
+  return prior;
+}
+
+}  // namespace
+
+bool is_in_place(const Solution& found, const Prior& prior, double relative_fit) {
+  constexpr double kExactly_m = 0.2, kExactly_rad = 0.02, kAsEver = 0.8;
+  const Pose T_end = predicted_end(prior);
+  return is_within(T_end.inverse() * found.trajectory.end(), kExactly_m, kExactly_rad) &&
+         relative_fit > kAsEver &&
+         weak_directions(found.data_information, found.motion_information, T_end.rotation).count ==
+             0;
+}
+
+void Relocalizer::draw_map(const LastAlignment& last, const Eigen::Vector3d& center_m,
+                           const LocalOdometry& local) {
+  if (map_end_ns_ == last.end_ns) return;
+  search_.set_map(local.map().cells().at(LocalMaps::kCoarse, FeatureKind::structure), center_m);
+  map_end_ns_ = last.end_ns;
+}
+
+std::optional<Solution> Relocalizer::find(const Observation& scan, const Prior& prior,
+                                          const Solution& at_prediction, const LastAlignment& last,
+                                          LocalOdometry& local) {
+  attempt_all(scan, prior, at_prediction, last, local);
+  const auto all = attempts();
+  Solution& best = *std::max_element(all.begin(), all.end(), fits_less);
+  if (!is_unambiguous(best)) return std::nullopt;
+  if (!best.converged) {
+    best = local.align(*scan.features, prior_at(best.trajectory.end(), prior), scan.finest_level);
+  }
+  const bool is_found = best.converged && best.inliers - best.structure_inliers > kMinGround &&
+                        last.fit.relative(best, scan.structure) > kHalfFit;
+  return is_found ? std::optional(best) : std::nullopt;
+}
+
+/// From where the scan was predicted to be, and from the likeliest places within reach of it.
+void Relocalizer::attempt_all(const Observation& scan, const Prior& prior,
+                              const Solution& at_prediction, const LastAlignment& last,
+                              LocalOdometry& local) {
+  const Trajectory predicted = local.unaligned(prior).trajectory;
+  const Pose T_end = predicted.end();
+  const double time_s = last.unseen_s(scan.timing) + scan.timing.span_s();
+  const SearchRadius radius{0.5 * kAcceleration_mps2 * time_s * time_s, kTurn_radps * time_s, 0.0};
+  draw_map(last, T_end.translation_m, local);
+  attempts_[0] = at_prediction;
+  attempt_count_ = 1;
+  for (const Displacement& by : search_.find(*scan.features, predicted, radius)) {
+    const Solution solution =
+        local.align(*scan.features, prior_at(displaced(T_end, by), prior), scan.finest_level);
+    if (is_within(T_end.inverse() * solution.trajectory.end(), radius.along_m + kSame_m,
+                  radius.yaw_rad + kSame_rad)) {
+      attempts_[attempt_count_++] = solution;
+    }
+  }
+}
+
+/// Whether nearly as much fits nowhere else.
+bool Relocalizer::is_unambiguous(const Solution& best) const {
+  const Pose back = best.trajectory.end().inverse();
+  return std::all_of(attempts_.data(), attempts_.data() + attempt_count_,
+                     [&](const Solution& other) {
+                       return is_within(back * other.trajectory.end(), kSame_m, kSame_rad) ||
+                              fits_significantly_better(best, other);
+                     });
+}
+
+Solution Relocalizer::follow_turn(const Solution& found, const Observation& scan,
+                                  const Prior& prior, const LastAlignment& last,
+                                  LocalOdometry& local) {
+  if (last.fit.relative(found, scan.structure) > kDoubtfulFit) return found;
+  const Trajectory predicted = local.unaligned(prior).trajectory;
+  draw_map(last, predicted.end().translation_m, local);
+  const SearchRadius& radius = last.is_doubtful ? kSuddenBefore : kSudden;
+  Solution best = found;
+  for (const Displacement& by :
+       search_.find(*scan.features, predicted, radius, Onset::within_scan)) {
+    const Solution other =
+        local.align(*scan.features, prior_turned(by, last.is_doubtful, prior), scan.finest_level);
+    if (fits_less(best, other)) best = other;
+  }
+  const bool is_better = fits_significantly_better(best, found) &&
+                         is_explained(best, last.fit.relative(best, scan.structure));
+  return is_better ? best : found;
+}
+
+}  // namespace lilo::core

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "core/registration/structure_fit.hpp"
+#include "core/search/displacement_search.hpp"
+#include "core/tracking/local_odometry.hpp"
+#include "core/tracking/observation.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace lilo::core {
+
+/// What is known when the sensor has to be found in the map.
+struct LastAlignment {
+  std::int64_t end_ns = 0;   ///< last firing of the last scan that was aligned; names the map too,
+                             ///< which does not grow without an alignment
+  bool is_doubtful = false;  ///< the last scan fitted much less than usual
+  StructureFit fit;
+
+  /// From the last aligned scan to the beginning of this one. A clock that was set back says as
+  /// little as one that was set forward.
+  [[nodiscard]] double unseen_s(const ScanTiming& scan) const {
+    return std::abs(seconds_between(end_ns, scan.start_ns));
+  }
+};
+
+/// Finds the sensor in the map where an alignment from the prediction does not reach.
+///
+/// After a second without the sensor the prediction may be off by metres and tens of degrees,
+/// farther than an alignment reaches, and yet some of the scan matches something. So all places
+/// within reach are searched (DisplacementSearch), the scan is aligned from the best of them, and
+/// one is taken only where significantly more of the structure fits than at any other.
+///
+/// Not thread-safe; no allocation after construction.
+class Relocalizer {
+ public:
+  /// `most_features`: of one scan.
+  explicit Relocalizer(std::size_t most_features) : search_(most_features) {}
+
+  /// The best alignment within reach of the prediction; none where no place is clearly the best.
+  /// `at_prediction`: the alignment from the prediction itself.
+  std::optional<Solution> find(const Observation& scan, const Prior& prior,
+                               const Solution& at_prediction, const LastAlignment& last,
+                               LocalOdometry& local);
+
+  /// Where `found`, the alignment from the prediction, fits far worse than usual, the sensor may
+  /// have begun to turn faster than it can follow: turns within the scan are searched, and taken
+  /// where significantly more fits.
+  Solution follow_turn(const Solution& found, const Observation& scan, const Prior& prior,
+                       const LastAlignment& last, LocalOdometry& local);
+
+ private:
+  void draw_map(const LastAlignment& last, const Eigen::Vector3d& center_m,
+                const LocalOdometry& local);
+  void attempt_all(const Observation& scan, const Prior& prior, const Solution& at_prediction,
+                   const LastAlignment& last, LocalOdometry& local);
+  [[nodiscard]] bool is_unambiguous(const Solution& best) const;
+  [[nodiscard]] std::span<Solution> attempts() {
+    return std::span(attempts_).first(attempt_count_);
+  }
+
+  DisplacementSearch search_;
+  std::int64_t map_end_ns_ = 0;  // LastAlignment::end_ns when the search was given the map
+  std::array<Solution, DisplacementSearch::kMostFound + 1> attempts_;
+  std::size_t attempt_count_ = 0;
+};
+
+/// Whether an alignment is beyond doubt where it was predicted to be.
+bool is_in_place(const Solution& found, const Prior& prior, double relative_fit);
+
+}  // namespace lilo::core

@@ -1,0 +1,131 @@
+#include "core/tracking/keyframe_map.hpp"
+
+#include "tests/core/observed_scan.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lilo::core {
+namespace {
+
+constexpr int kEnough = 6;  // keyframes after which the map is no longer filled at once
+
+Solution solution_at(const Pose& T_begin, int matched = 1000) {
+  Solution solution;
+  solution.trajectory.T_begin = T_begin;
+  solution.trajectory.knots = Unknowns::Zero(Eigen::Index{kKnotSize} * 2);
+  solution.asked = 1000;
+  solution.matched = matched;
+  return solution;
+}
+
+class KeyframeMapTest : public testing::Test {
+ protected:
+  /// The yard from `x_m`, as the scan after the last one.
+  bool grow(double x_m, MapUse use = MapUse::keyframe, int matched = 1000) {
+    const Pose T{Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}};
+    const std::uint64_t index = count_++;
+    const test::ObservedScan scan(
+        test::yard(), [&](double) { return T; }, index);
+    return map_.grow(
+        {scan.timing(), scan.features(), solution_at(T, matched), T, use, LocalMaps::kUsual});
+  }
+  void fill() {
+    for (int k = 0; k < kEnough; ++k) grow(0.5 * k);
+  }
+
+  KeyframeMap map_{DefaultConfig{}};
+  std::uint64_t count_ = 0;
+};
+
+TEST_F(KeyframeMapTest, TakesTheFirstScan) {
+  EXPECT_TRUE(grow(0.0));
+  EXPECT_EQ(map_.keyframes(), 1);
+  EXPECT_GT(map_.cells().size(), 100);
+}
+
+TEST_F(KeyframeMapTest, GrowsWhenTheSensorHasMoved) {
+  fill();
+  const int before = map_.keyframes();
+  const double at_m = 0.5 * (kEnough - 1);
+  EXPECT_FALSE(grow(at_m + 0.1));
+  EXPECT_FALSE(grow(at_m + 0.2));
+  EXPECT_TRUE(grow(at_m + 0.35));
+  EXPECT_EQ(map_.keyframes(), before + 1);
+}
+
+TEST_F(KeyframeMapTest, OfAStandingSensorGrowsWhileItKnowsTooLittle) {
+  grow(0.0);
+  EXPECT_TRUE(grow(0.0, MapUse::keyframe, 300));
+  EXPECT_FALSE(grow(0.0, MapUse::keyframe, 900));
+}
+
+TEST_F(KeyframeMapTest, LeavesOutWhatWasNotAligned) {
+  fill();
+  EXPECT_FALSE(grow(9.0, MapUse::none));
+  EXPECT_FALSE(grow(9.0, MapUse::end_only));
+  EXPECT_TRUE(grow(9.0));
+}
+
+TEST_F(KeyframeMapTest, EntersOneScanLate) {
+  fill();
+  grow(3.0, MapUse::none);  // whatever was held is in
+  const int before = map_.cells().size();
+  ASSERT_TRUE(grow(9.0));
+  EXPECT_EQ(map_.cells().size(), before);
+  grow(9.0);
+  EXPECT_GT(map_.cells().size(), before);
+}
+
+// The next scan begins 0.4 m beside where the keyframe was thought to end.
+TEST_F(KeyframeMapTest, TheNextScanPutsTheEndOfAKeyframeRight) {
+  const auto mean_y_m = [](MapUse use, bool follows) {
+    KeyframeMap map{DefaultConfig{}};
+    const auto still = [](double) { return Pose{}; };
+    Pose T;
+    for (int k = 0; k < kEnough; ++k) {  // far away and forgotten: what counts is the last
+      const test::ObservedScan scan({}, still, static_cast<std::uint64_t>(k));
+      T.translation_m.x() = 0.5 * k;
+      map.grow({scan.timing(), scan.features(), solution_at(T), T});
+    }
+    const test::ObservedScan held(test::yard(), still, kEnough);
+    T.translation_m.x() += 0.5;
+    map.grow({held.timing(), held.features(), solution_at(T), T});
+    const test::ObservedScan next(test::yard(), still, follows ? kEnough + 1 : kEnough + 5);
+    Solution solution = solution_at(T);
+    solution.trajectory.knots[4] = 0.4;  // y of the first knot
+    map.grow({next.timing(), next.features(), solution, T, use});
+    double sum_m = 0.0;
+    int count = 0;
+    map.cells().for_each_mean([&](const Eigen::Vector3d& mean_m) {
+      sum_m += mean_m.y();
+      ++count;
+    });
+    EXPECT_GT(count, 100);
+    return sum_m / std::max(count, 1);
+  };
+  const double moved_m = mean_y_m(MapUse::end_only, true);
+  EXPECT_GT(moved_m, mean_y_m(MapUse::none, true) + 0.1) << "it was not aligned";
+  EXPECT_GT(moved_m, mean_y_m(MapUse::end_only, false) + 0.1) << "firings are missing";
+}
+
+TEST_F(KeyframeMapTest, BeginsWithOneScanAtOnce) {
+  fill();
+  const test::ObservedScan scan(
+      test::yard(), [](double) { return Pose{}; }, 0);
+  map_.begin(scan.features(), solution_at({}).trajectory, LocalMaps::kUsual);
+  EXPECT_EQ(map_.keyframes(), 1);
+  KeyframeMap fresh{DefaultConfig{}};
+  fresh.begin(scan.features(), solution_at({}).trajectory, LocalMaps::kUsual);
+  EXPECT_EQ(map_.cells().size(), fresh.cells().size()) << "nothing of before is left";
+}
+
+TEST_F(KeyframeMapTest, IsEmptyAfterClear) {
+  fill();
+  map_.clear();
+  EXPECT_EQ(map_.cells().size(), 0);
+  EXPECT_EQ(map_.keyframes(), 0);
+  EXPECT_TRUE(grow(0.0));
+}
+
+}  // namespace
+}  // namespace lilo::core

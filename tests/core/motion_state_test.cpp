@@ -1,0 +1,85 @@
+#include "core/motion/motion_state.hpp"
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace lilo::core {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+const Vector6d kDensity = Vector6d::Constant(2.0);
+
+/// At 10 m/s along x, at the end of a scan at 5 s.
+MotionState driving() {
+  MotionState state;
+  state.T_odom_sensor.translation_m = {3.0, 1.0, 0.0};
+  state.twist.linear_mps.x() = 10.0;
+  state.end_ns = 5 * kSecond_ns;
+  return state;
+}
+
+ScanTiming scan_after(double gap_s) {
+  const std::int64_t start_ns = 5 * kSecond_ns + static_cast<std::int64_t>(gap_s * 1e9);
+  return {start_ns, start_ns + kSecond_ns / 10};
+}
+
+TEST(Predict, GoesOnAtConstantVelocity) {
+  const Prior prior = predict(driving(), scan_after(0.0), kDensity, 2);
+  EXPECT_NEAR(prior.T_begin.translation_m.x(), 3.0, 1e-9);
+  EXPECT_NEAR(predicted_end(prior).translation_m.x(), 4.0, 1e-9);
+  EXPECT_NEAR(predicted_end(prior).translation_m.y(), 1.0, 1e-9);
+  EXPECT_EQ(prior.acceleration_density, kDensity);
+}
+
+TEST(Predict, KnowsLessAfterAGap) {
+  const Prior next = predict(driving(), scan_after(0.0), kDensity, 2);
+  const Prior late = predict(driving(), scan_after(1.0), kDensity, 2);
+  EXPECT_NEAR(late.T_begin.translation_m.x(), 13.0, 1e-9);
+  const KnotInformation before = next.begin_information.inverse();  // covariances
+  const KnotInformation after = late.begin_information.inverse();
+  for (int k = 0; k < kKnotSize; ++k) EXPECT_GT(after(k, k), before(k, k)) << k;
+}
+
+TEST(Predict, StaysWhereItWasOverALongGapOrAStepOfTheClock) {
+  for (const double gap_s : {kLongestGap_s + 0.1, 3600.0, -3600.0}) {
+    const Prior prior = predict(driving(), scan_after(gap_s), kDensity, 2);
+    EXPECT_NEAR(prior.T_begin.translation_m.x(), 3.0, 1e-9) << gap_s;
+    EXPECT_NEAR(prior.span_s, 0.1, 1e-9) << gap_s;
+  }
+}
+
+// All returns are those of the last firing: the trajectory begins where the last scan ended.
+TEST(Predict, ReachesBackToTheLastScanWhereReturnsWereCompensated) {
+  ScanTiming scan = scan_after(0.05);
+  scan.motion_compensated = true;
+  const Prior prior = predict(driving(), scan, kDensity, 2);
+  EXPECT_NEAR(prior.T_begin.translation_m.x(), 3.0, 1e-9);
+  EXPECT_NEAR(prior.span_s, 0.15, 1e-9);
+}
+
+TEST(Predict, OfTheFirstScanStandsAtTheOrigin) {
+  const Prior prior = predict({}, scan_after(0.0), kDensity, 2);
+  EXPECT_EQ(prior.T_begin.translation_m, Eigen::Vector3d::Zero().eval());
+  EXPECT_EQ(prior.begin_information, initial_information());
+  EXPECT_NEAR(prior.span_s, 0.1, 1e-9);
+}
+
+TEST(PredictedState, IsThePredictionWithLessInformation) {
+  const Prior prior = predict(driving(), scan_after(0.0), kDensity, 2);
+  const MotionState state = predicted_state(prior, 7);
+  EXPECT_EQ(state.T_odom_sensor.translation_m, predicted_end(prior).translation_m);
+  EXPECT_EQ(state.twist.linear_mps, prior.twist.linear_mps);
+  EXPECT_EQ(state.end_ns, 7);
+  EXPECT_LT(state.information(3, 3), prior.begin_information(3, 3));
+}
+
+TEST(ScanTiming, FollowsWhereNoFiringIsMissing) {
+  const ScanTiming scan{1'000'000'000, 1'100'000'000};
+  EXPECT_TRUE(scan.follows(999'950'000));
+  EXPECT_FALSE(scan.follows(990'000'000));
+  EXPECT_NEAR(scan.span_s(), 0.1, 1e-12);
+  EXPECT_NEAR((ScanTiming{5, 5}.span_s()), 0.1, 1e-12) << "stamps that tell nothing";
+}
+
+}  // namespace
+}  // namespace lilo::core

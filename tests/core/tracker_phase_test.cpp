@@ -1,0 +1,132 @@
+// The state machine of tracker.hpp, transition by transition.
+#include "core/image/feature_image.hpp"
+#include "core/tracking/tracker.hpp"
+#include "tests/core/analytic_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace lilo::core {
+namespace {
+
+class TrackerPhase : public testing::Test {
+ protected:
+  /// The yard from `T`, or whatever `scene` is, in the scan with that number.
+  Estimate take(std::uint64_t index, const Pose& T = {}, const test::Scene& scene = test::yard()) {
+    const Scan scan = test::scan_of(
+        scene, test::even_beams(16, -15.0, 15.0), 900, [&](double) { return T; }, index);
+    const std::vector<Feature>& features = image_.build(scan);
+    const Estimate estimate = tracker_.align(scan, features, {});
+    tracker_.update_map(features, {});
+    return estimate;
+  }
+  /// Driving at 5 m/s.
+  Estimate drive(std::uint64_t index) {
+    const auto k = static_cast<double>(index);
+    const Scan scan = test::scan_of(
+        test::yard(), test::even_beams(16, -15.0, 15.0), 900,
+        [&](double s) {
+          return Pose{Eigen::Quaterniond::Identity(), {0.5 * (k + s) - 8.0, 0.0, 0.0}};
+        },
+        index);
+    const std::vector<Feature>& features = image_.build(scan);
+    const Estimate estimate = tracker_.align(scan, features, {});
+    tracker_.update_map(features, {});
+    return estimate;
+  }
+  void stand_until_tracking() {
+    for (std::uint64_t k = 0; k < 10; ++k) take(k);
+    ASSERT_EQ(tracker_.phase(), Phase::tracking);
+  }
+
+  Tracker tracker_{OdometryConfig{}};
+  FeatureImage image_{1024, {}};
+};
+
+const test::Scene& elsewhere() {
+  static const test::Scene scene = [] {
+    test::Scene s;
+    s.planes = {{{0.0, 0.0, 1.0}, -6.0}, {{0.0, -0.8, 0.6}, -30.0}, {{-0.8, 0.0, 0.6}, -35.0}};
+    s.poles = {{25.0, 25.0, 6.0, 60.0}, {-22.0, 20.0, 4.0, 60.0}, {-30.0, -9.0, 5.0, 60.0}};
+    return s;
+  }();
+  return scene;
+}
+
+TEST_F(TrackerPhase, StartsAndTracksAfterFourScansAtRest) {
+  for (std::uint64_t k = 0; k < 3; ++k) {
+    take(k);
+    EXPECT_EQ(tracker_.phase(), Phase::starting) << k;
+  }
+  take(3);
+  EXPECT_EQ(tracker_.phase(), Phase::tracking);
+}
+
+TEST_F(TrackerPhase, StartsAndTracksAfterSixScansInMotion) {
+  for (std::uint64_t k = 0; k < 5; ++k) {
+    EXPECT_EQ(drive(k).status, TrackingStatus::initializing) << k;
+    EXPECT_EQ(tracker_.phase(), Phase::starting) << k;
+  }
+  EXPECT_EQ(drive(5).status, TrackingStatus::tracking);
+  EXPECT_EQ(tracker_.phase(), Phase::tracking);
+}
+
+TEST_F(TrackerPhase, IsLostAfterAGapAndTracksWhereItIsFoundAgain) {
+  stand_until_tracking();
+  const Pose carried{so3_exp({0.0, 0.0, 0.4}), {1.2, -0.8, 0.0}};
+  const Estimate e = take(20, carried);
+  EXPECT_EQ(tracker_.phase(), Phase::lost);
+  EXPECT_NE(e.status, TrackingStatus::lost) << "it was found";
+  EXPECT_LT((e.T_odom_sensor.translation_m - carried.translation_m).norm(), 0.1);
+  take(21, carried);
+  EXPECT_EQ(tracker_.phase(), Phase::tracking);
+  EXPECT_EQ(e.restarts, 0U);
+}
+
+TEST_F(TrackerPhase, BeginsASessionAfterTenScansInVain) {
+  stand_until_tracking();
+  for (std::uint64_t k = 10; k < 20; ++k) {
+    const Estimate e = take(k, {}, elsewhere());
+    EXPECT_EQ(e.status, TrackingStatus::lost) << k;
+    EXPECT_EQ(e.restarts, 0U) << k;
+  }
+  EXPECT_EQ(take(20, {}, elsewhere()).restarts, 1U);
+  EXPECT_EQ(tracker_.phase(), Phase::starting);
+}
+
+TEST_F(TrackerPhase, BeginsASessionAfterALongGapInMotion) {
+  for (std::uint64_t k = 0; k < 12; ++k) drive(k);
+  ASSERT_EQ(tracker_.phase(), Phase::tracking);
+  const Estimate e = take(50, {Eigen::Quaterniond::Identity(), {3.0, 2.0, 0.0}});
+  EXPECT_EQ(e.restarts, 1U);
+  EXPECT_EQ(e.status, TrackingStatus::initializing);
+  EXPECT_EQ(tracker_.phase(), Phase::starting);
+}
+
+TEST_F(TrackerPhase, WaitsForASensorThatStood) {
+  stand_until_tracking();
+  const Estimate e = take(100);
+  EXPECT_EQ(e.restarts, 0U);
+  EXPECT_EQ(tracker_.phase(), Phase::lost);
+}
+
+TEST_F(TrackerPhase, BeginsAgainInTheSameSessionAfterAFragment) {
+  Scan part = test::scan_of(
+      test::yard(), test::even_beams(16, -15.0, 15.0), 900, [](double) { return Pose{}; }, 0);
+  part.returns.resize(part.returns.size() / 12);
+  const std::vector<Feature> features = image_.build(part);
+  tracker_.align(part, features, {});
+  tracker_.update_map(features, {});
+  const Estimate e = take(1);
+  EXPECT_EQ(e.restarts, 0U);
+  EXPECT_EQ(e.status, TrackingStatus::initializing);
+  take(2);
+  take(3);
+  EXPECT_EQ(tracker_.phase(), Phase::starting) << "counted from the first whole scan";
+  take(4);
+  EXPECT_EQ(tracker_.phase(), Phase::tracking);
+}
+
+}  // namespace
+}  // namespace lilo::core
