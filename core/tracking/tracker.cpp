@@ -31,10 +31,15 @@ Tracker::Tracker(const OdometryConfig& config)
 Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, StageHook hook) {
   scan_ = observe(scan, selection_.choose(features));
   hook(Stage::filter);
-  if (must_begin_session()) begin_session();
-  update_phase(features);
-  const Prior prior = local_.predict(scan_.timing);
-  alignment_ = judge(solve(prior));
+  if (session_.is_over) begin_session();
+  Prior prior = begin_scan(features);
+  std::optional<Solution> solution = solve(prior);
+  if (!solution) {
+    begin_session();
+    prior = begin_scan(features);
+    solution = solve(prior);
+  }
+  alignment_ = judge(*solution);
   accept(prior);
   watch_session();
   if (!is_first() && alignment_.status != TrackingStatus::lost) {
@@ -54,21 +59,6 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
   hook(Stage::update_map);
 }
 
-/// Whether the map can be of no more use. Where the sensor went unseen for longer than it can be
-/// searched, the old map must not be asked: some place in it always looks like the new one. That
-/// the clock was set is no reason: then the sensor is where it was predicted. One that stood is
-/// waited for.
-bool Tracker::must_begin_session() {
-  if (session_.is_over) return true;
-  if (phase_ == Phase::starting || !scan_.says_enough()) return false;
-  if (last_.unseen_s(scan_.timing) <= kLongestGap_s || is_stationary(local_.state().twist)) {
-    return false;
-  }
-  const Prior prior = local_.predict(scan_.timing);
-  const Solution found = local_.align(*scan_.features, prior, scan_.finest_level);
-  return !is_in_place(found, prior, last_.fit.relative(found, scan_.structure));
-}
-
 /// Gives the map up and begins another where the prediction ends: wherever the sensor is now, it is
 /// not where the map knows it, and only a new map ever lets it track again.
 void Tracker::begin_session() {
@@ -85,16 +75,20 @@ void Tracker::begin_map() {
   phase_ = Phase::starting;
 }
 
-void Tracker::update_phase(const std::vector<Feature>& features) {
+/// Finds out what to do about the scan, and predicts its motion.
+Prior Tracker::begin_scan(const std::vector<Feature>& features) {
   if (phase_ == Phase::starting) {
     if (initializer_.must_begin_again(scan_.timing, features.size(), local_.state())) begin_map();
     const bool was_lost = alignment_.status == TrackingStatus::lost;
-    if (!initializer_.add(scan_, features, was_lost, local_)) return;
+    const bool is_known = initializer_.add(scan_, features, was_lost, local_);
+    if (!is_known) return local_.predict(scan_.timing);
   }
   phase_ = last_.unseen_s(scan_.timing) > kShortGap_s ? Phase::lost : Phase::tracking;
+  return local_.predict(scan_.timing);
 }
 
-Solution Tracker::solve(const Prior& prior) {
+/// None where the map can be of no more use.
+std::optional<Solution> Tracker::solve(const Prior& prior) {
   // Who was switched on mostly stands; where a map was given up, more scans must tell.
   if (initializer_.scans() == 2) return initializer_.align_second(session_.restarts == 0, local_);
   if (phase_ == Phase::lost && scan_.says_enough()) {
@@ -106,14 +100,21 @@ Solution Tracker::solve(const Prior& prior) {
   return relocalizer_.follow_turn(found, scan_, prior, last_, local_);
 }
 
-/// The prediction, if the sensor is not found.
-Solution Tracker::relocalize(const Solution& at_prediction, const Prior& prior) {
+/// The prediction, if the sensor is not found. None where it went unseen for longer than it can be
+/// searched: the old map must not be asked then, some place in it always looks like the new one.
+/// That the clock was set is no reason: then the sensor is where it was predicted. One that stood
+/// is waited for.
+std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const Prior& prior) {
+  const auto is_predicted = [&](const Solution& solution) {
+    return is_in_place(solution, prior, last_.fit.relative(solution, scan_.structure));
+  };
+  const bool is_searchable = last_.unseen_s(scan_.timing) <= kLongestGap_s;
+  if (!is_searchable && !is_stationary(local_.state().twist) && !is_predicted(at_prediction)) {
+    return std::nullopt;
+  }
   const std::optional<Solution> found =
       relocalizer_.find(scan_, prior, at_prediction, last_, local_);
-  const bool is_searchable = last_.unseen_s(scan_.timing) <= kLongestGap_s;
-  const bool is_found =
-      found && !is_lost(*found) &&
-      (is_searchable || is_in_place(*found, prior, last_.fit.relative(*found, scan_.structure)));
+  const bool is_found = found && !is_lost(*found) && (is_searchable || is_predicted(*found));
   return is_found ? *found : local_.unaligned(prior);
 }
 

@@ -13,6 +13,7 @@
 #include "core/tracking/relocalizer.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace lilo::core {
@@ -59,13 +60,12 @@ class Tracker {
     bool is_over = false;   ///< the next scan begins another
     int scans_in_vain = 0;  ///< on end, that saw enough and found nothing of it in the map
   };
-  void update_phase(const std::vector<Feature>& features);
-  [[nodiscard]] bool must_begin_session();
   void begin_session();
   void begin_map();
   [[nodiscard]] bool is_first() const { return initializer_.scans() == 1; }
-  Solution solve(const Prior& prior);
-  Solution relocalize(const Solution& at_prediction, const Prior& prior);
+  Prior begin_scan(const std::vector<Feature>& features);
+  std::optional<Solution> solve(const Prior& prior);
+  std::optional<Solution> relocalize(const Solution& at_prediction, const Prior& prior);
   [[nodiscard]] bool is_lost(const Solution& solution) const;
   [[nodiscard]] Alignment judge(const Solution& solution) const;
   void accept(const Prior& prior);
