@@ -69,4 +69,16 @@ std::vector<Eigen::Vector3f> Odometry::map_points() const {
   return std::visit([](const auto& profile) { return profile.map_points(); }, impl_->profile);
 }
 
+void Odometry::aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const {
+  out.clear();
+  const auto* tracker = std::get_if<core::Tracker>(&impl_->profile);
+  if (tracker != nullptr) tracker->aligned_points(most, out);
+}
+
+void Odometry::mapped_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const {
+  out.clear();
+  const auto* tracker = std::get_if<core::Tracker>(&impl_->profile);
+  if (tracker != nullptr) tracker->mapped_points(most, out);
+}
+
 }  // namespace lilo

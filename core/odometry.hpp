@@ -40,6 +40,14 @@ class Odometry {
   /// every fine cell; paper, both map clouds. Allocates: for saving, not for every scan.
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
+  /// What the last scan was aligned by, in the sensor's frame at the instant of its pose (m): at
+  /// most `most` points, evenly from all of them. Replaces what `out` held, and allocates where
+  /// that had less room. Profile paper: none.
+  void aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
+  /// What the last update_map() added to the map, likewise in the sensor's frame; nothing when the
+  /// map did not grow.
+  void mapped_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -15,7 +15,6 @@ Selection::Selection(int ground_goal, int structure_goal)
   picked_.reserve(FeatureImage::kMostPixels);
 }
 
-/// A step that visits all of `size` elements, one after the other far apart and evenly spread.
 std::size_t Selection::golden_stride(std::size_t size) {
   constexpr double kGolden = 0.6180339887498949;
   auto stride = static_cast<std::size_t>(kGolden * static_cast<double>(size)) | 1U;

@@ -20,12 +20,17 @@ class Selection {
   /// The chosen features, in the image's order; the result lives until the next call.
   const std::vector<Feature>& choose(const std::vector<Feature>& all);
 
+  /// What choose() gave last.
+  [[nodiscard]] const std::vector<Feature>& chosen() const { return chosen_; }
+
+  /// A step that visits all of `size` elements, one after the other far apart and evenly spread.
+  [[nodiscard]] static std::size_t golden_stride(std::size_t size);
+
   /// More are never chosen.
   [[nodiscard]] std::size_t most() const { return chosen_.capacity(); }
 
  private:
   static constexpr int kKinds = 2;
-  [[nodiscard]] static std::size_t golden_stride(std::size_t size);
   [[nodiscard]] static std::uint64_t voxel_of(const Feature& f, float per_m);
   /// False when a goal was reached twice over before the end, or not even half though there is
   /// more. Adapts the voxels in any case.

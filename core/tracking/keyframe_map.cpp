@@ -39,6 +39,7 @@ void KeyframeMap::clear() {
   held_.is_waiting = false;
   T_odom_keyframe_ = {};
   keyframes_ = 0;
+  points_.clear();
 }
 
 void KeyframeMap::begin(const std::vector<Feature>& features, const Trajectory& trajectory,
@@ -50,6 +51,7 @@ void KeyframeMap::begin(const std::vector<Feature>& features, const Trajectory& 
 }
 
 bool KeyframeMap::grow(const AlignedScan& scan) {
+  points_.clear();
   cells_.forget_beyond(scan.T_odom_sensor.translation_m, config_.map_radius_m);
   if (held_.is_waiting) {
     const bool continues = scan.timing.motion_compensated || scan.timing.follows(held_.end_ns);

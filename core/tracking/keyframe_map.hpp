@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lilo::core {
@@ -42,6 +43,9 @@ class KeyframeMap {
   [[nodiscard]] const LocalMaps& cells() const { return cells_; }
   [[nodiscard]] int keyframes() const { return keyframes_; }
 
+  /// The points that entered the map with the last scan, in the frame of the map.
+  [[nodiscard]] std::span<const LocalMaps::Point> inserted() const { return points_; }
+
   /// Empties the map.
   void clear();
   /// Empties the map and makes one scan its first keyframe, at once. Its pose is the origin.
@@ -67,7 +71,7 @@ class KeyframeMap {
   LocalMaps cells_;
   Held held_;
   Sampled sampled_;                       // of the keyframe that is inserted
-  std::vector<LocalMaps::Point> points_;  // the same
+  std::vector<LocalMaps::Point> points_;  // the same; none if the last scan inserted none
   Pose T_odom_keyframe_;
   int keyframes_ = 0;
 };

@@ -43,6 +43,9 @@ class Tracker {
   /// Once after each align(), with the same features.
   void update_map(const std::vector<Feature>& features, StageHook hook);
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
+  /// As in Odometry.
+  void aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
+  void mapped_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
   [[nodiscard]] Phase phase() const { return phase_; }
 
  private:

@@ -54,11 +54,15 @@ TEST_P(OdometryAllocation, NoneOnceWarm) {
   Scan scan;
   std::vector<std::uint64_t> guilty;
   std::uint64_t count = 0;
+  std::vector<Eigen::Vector3f> seen_m;
+  seen_m.reserve(600);
   while (scans->next(scan)) {
     ++count;
     if (count > kLastBeforeGap && count < kFirstAfterGap) continue;
     const std::uint64_t before = allocations;
     odometry.process(scan);
+    odometry.aligned_points(600, seen_m);
+    odometry.mapped_points(600, seen_m);
     if (count > kWarmScans && allocations != before) guilty.push_back(count - 1);
   }
   EXPECT_GT(count, 100U);
