@@ -32,7 +32,10 @@ struct SubscribeConfig {
   std::uint16_t port = 9871;       ///< 0: nobody can ask
   std::vector<std::string> allow;  ///< IPv4 addresses besides loopback
   int max_clients = 16;
-  double lease_s = 5.0;  ///< longest, and the one granted when none is asked for
+  double lease_s = 5.0;    ///< longest, and the one granted when none is asked for
+  int points_clients = 4;  ///< subscribers that may have points; 0: none
+  int scan_points = 600;   ///< most points a scan they get of what it was aligned by,
+  int map_points = 500;    ///< and of what it added to the map
 };
 
 /// What the daemon keeps.

@@ -226,6 +226,16 @@ std::vector<Key> subscribe_keys() {
               "Subscribers at one time."),
       real("subscribe.lease_s", LILO_MEMBER(subscribe.lease_s), 1.0, 3600.0, "s", kLive,
            "A subscription ends when it is not renewed for this long."),
+      integer("subscribe.points_clients", LILO_MEMBER(subscribe.points_clients), 0, 16, "",
+              kRestart,
+              "Subscribers at one time that may have points too, as lilo view asks for; 0: nobody. "
+              "Nothing is sent or computed until one asks."),
+      integer("subscribe.scan_points", LILO_MEMBER(subscribe.scan_points), 0, 4000, "points",
+              kRestart,
+              "Points a scan for each of them, at most, of those the scan was aligned by. 120 take "
+              "a datagram of 1.2 kB."),
+      integer("subscribe.map_points", LILO_MEMBER(subscribe.map_points), 0, 4000, "points",
+              kRestart, "The same for those that the scan added to the map."),
   };
 }
 

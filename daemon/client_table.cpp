@@ -4,15 +4,22 @@
 
 namespace lilo {
 
-bool ClientTable::renew(const boost::asio::ip::udp::endpoint& endpoint, std::int64_t lease_end_ns) {
-  for (Client& client : clients_) {
-    if (client.endpoint != endpoint) continue;
-    client.lease_end_ns = lease_end_ns;
-    return true;
+const ClientTable::Client* ClientTable::renew(const boost::asio::ip::udp::endpoint& endpoint,
+                                              std::int64_t lease_end_ns, bool wants_points) {
+  auto client = std::find_if(clients_.begin(), clients_.end(),
+                             [&](const Client& c) { return c.endpoint == endpoint; });
+  if (client == clients_.end()) {
+    if (clients_.size() >= capacity_) return nullptr;
+    client = clients_.insert(client, {.endpoint = endpoint});
   }
-  if (clients_.size() >= capacity_) return false;
-  clients_.push_back({endpoint, lease_end_ns});
-  return true;
+  client->lease_end_ns = lease_end_ns;
+  client->has_points = wants_points && (client->has_points || points_clients() < points_capacity_);
+  return &*client;
+}
+
+std::size_t ClientTable::points_clients() const {
+  return static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(),
+                                                [](const Client& c) { return c.has_points; }));
 }
 
 void ClientTable::remove(const boost::asio::ip::udp::endpoint& endpoint) {

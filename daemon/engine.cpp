@@ -13,6 +13,7 @@ namespace lilo {
 namespace {
 
 constexpr std::size_t kReportSlots = 64;  // 6 s of poses while the publisher is held up
+constexpr std::size_t kPointsSlots = 4;
 constexpr std::size_t kThreadStackBytes = 1 << 20;
 
 /// What a thread tells of itself before it starts work.
@@ -56,15 +57,28 @@ ScanRing& prepared(ScanRing& scans, const Config& config) {
   return scans;
 }
 
+PointsOutput prepared(PointsRing& points, const SubscribeConfig& config) {
+  const PointsOutput out{points, static_cast<std::size_t>(config.scan_points),
+                         static_cast<std::size_t>(config.map_points)};
+  // With a value, so that the memory is touched before it is needed.
+  points.for_each_slot([&](PointsReport& slot) {
+    slot.scan_m.assign(out.most_of_scan, Eigen::Vector3f::Zero());
+    slot.map_m.assign(out.most_of_map, Eigen::Vector3f::Zero());
+  });
+  return out;
+}
+
 }  // namespace
 
 Engine::Engine(const Config& config, std::unique_ptr<PacketSource> source)
     : realtime_(config.realtime),
       scans_(static_cast<std::size_t>(config.realtime.ring_slots)),
       reports_(kReportSlots),
+      points_(kPointsSlots),
       receiver_(std::move(source), sensor_config(config), config.odometry, prepared(scans_, config),
                 scan_ready_, counters_),
-      worker_(config.odometry, scans_, scan_ready_, reports_, report_ready_, counters_) {}
+      worker_(config.odometry, scans_, scan_ready_, reports_, prepared(points_, config.subscribe),
+              report_ready_, counters_) {}
 
 Engine::~Engine() { stop(); }
 

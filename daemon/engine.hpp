@@ -29,6 +29,9 @@ class Engine {
   void stop();
 
   [[nodiscard]] ReportRing& reports() { return reports_; }
+  /// What was seen with the poses, while want_points() says so.
+  [[nodiscard]] PointsRing& points() { return points_; }
+  void want_points(bool wanted) { counters_.points_asked = wanted; }
   [[nodiscard]] Wakeup& report_ready() { return report_ready_; }
   [[nodiscard]] const PipelineCounters& counters() const { return counters_; }
   [[nodiscard]] const Receiver& receiver() const { return receiver_; }
@@ -51,6 +54,7 @@ class Engine {
   Wakeup report_ready_{Wakeup::Mode::polled};
   ScanRing scans_;
   ReportRing reports_;
+  PointsRing points_;
   Receiver receiver_;
   Worker worker_;
   bool map_asked_ = false;  // and not yet taken

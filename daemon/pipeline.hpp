@@ -14,6 +14,7 @@
 
 /// What the three threads hand to each other:
 ///   receiver ==ScanSlot==> worker ==PoseReport==> publisher, and counters that all may read.
+///                                ==PointsReport==>  while a client has asked for points
 namespace lilo {
 
 struct ScanSlot {
@@ -36,6 +37,17 @@ struct PoseReport {
   std::uint64_t worker_minor_faults = 0;  ///< page faults of the thread since its start
 };
 
+/// What the odometry saw of one scan, for clients who look on. In the sensor's frame at the instant
+/// of the pose. Its memory is reserved once.
+struct PointsReport {
+  std::uint64_t seq = 0;       ///< as in PoseReport,
+  std::uint64_t resets = 0;    ///< and of the same odometry
+  std::uint32_t restarts = 0;  ///< as in Estimate
+  std::int64_t stamp_ns = 0;
+  std::vector<Eigen::Vector3f> scan_m;  ///< what the scan was aligned by
+  std::vector<Eigen::Vector3f> map_m;   ///< what it added to the map
+};
+
 /// The odometry's map at one instant, for saving.
 struct MapCopy {
   std::vector<Eigen::Vector3f> points_m;  ///< in the odometry's own frame
@@ -44,6 +56,7 @@ struct MapCopy {
 
 using ScanRing = SpscRing<ScanSlot>;
 using ReportRing = SpscRing<PoseReport>;
+using PointsRing = SpscRing<PointsReport>;
 
 /// Each counter has one writer; any thread reads. Totals since the start.
 struct PipelineCounters {
@@ -57,6 +70,7 @@ struct PipelineCounters {
   std::atomic<std::uint64_t> resets_done{0};      ///< worker
   std::atomic<std::uint64_t> maps_asked{0};       ///< publisher
   std::atomic<std::uint64_t> maps_done{0};        ///< worker
+  std::atomic<bool> points_asked{false};          ///< publisher: somebody looks on
   std::atomic<bool> behind{false};                ///< receiver asks, worker answers by skipping
   std::atomic<bool> stop{false};                  ///< publisher asks both to end
 };

@@ -4,6 +4,7 @@
 #include "daemon/clock.hpp"
 #include "daemon/map_file.hpp"
 #include "daemon/metrics_file.hpp"
+#include "daemon/points_message.hpp"
 #include "daemon/prometheus.hpp"
 
 #include <utility>
@@ -42,6 +43,7 @@ void Publisher::take_reports() {
   // In this order: the poses before the map are of its session.
   std::optional<MapCopy> map = engine_.take_map();
   send_poses();
+  send_points();
   if (map) save_map(std::move(*map));
 }
 
@@ -69,6 +71,30 @@ void Publisher::send_pose(const PoseReport& report) {
     ++poses_sent_;
   }
   monitor_.add(report, static_cast<double>(now_ns - report.last_packet_ns) * 1e-6);
+}
+
+// After the poses, which are urgent. Of another session than the last pose they would be of no use.
+void Publisher::send_points() {
+  engine_.want_points(server_.has_points_clients());
+  PointsRing& ring = engine_.points();
+  while (PointsReport* report = ring.front()) {
+    if (report->resets == resets_ && report->restarts == restarts_) send_points_of(*report);
+    ring.release();
+  }
+}
+
+void Publisher::send_points_of(PointsReport& report) {
+  const PointsContext context{message_.session, report.stamp_ns, report.seq};
+  const auto send = [&](PointSet set, std::vector<Eigen::Vector3f>& points_m) {
+    if (mounted_) {
+      for (Eigen::Vector3f& p_m : points_m)
+        p_m = (T_base_sensor_ * p_m.cast<double>()).cast<float>();
+    }
+    for (std::size_t k = 0; k < points_datagrams(points_m.size()); ++k)
+      server_.send_points(write_points(context, set, points_m, k, points_json_));
+  };
+  send(PointSet::scan, report.scan_m);
+  send(PointSet::map, report.map_m);
 }
 
 bool Publisher::reset(const std::optional<Pose>& start_pose) {

@@ -40,6 +40,8 @@ class Publisher {
  private:
   void send_poses();
   void send_pose(const PoseReport& report);
+  void send_points();
+  void send_points_of(PointsReport& report);
   void save(SaveKind kind, const SaveDone& done);
   void save_trajectory(const SaveDone& done);
   void save_map(MapCopy map);
@@ -61,7 +63,7 @@ class Publisher {
   std::optional<Pose> next_start_;
   PoseRecord record_;
   SaveDone map_saved_;  // empty: no map was asked for
-  JsonWriter pose_json_, health_json_;
+  JsonWriter pose_json_, health_json_, points_json_;
   std::string_view last_pose_;
   Health health_;
   std::string metrics_path_, metrics_;

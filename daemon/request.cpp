@@ -65,6 +65,10 @@ ParsedRequest read_fields(Request request, const json& body) {
     if (!ttl) return refuse("ttl_s: expected a number of seconds");
     request.ttl_s = (*ttl)[0];
   }
+  if (body.contains("points")) {
+    if (!body["points"].is_boolean()) return refuse("points: expected true or false");
+    request.points = body["points"].get<bool>();
+  }
   if (body.contains("pose")) {
     request.start_pose = pose_from(body["pose"]);
     if (!request.start_pose) return refuse("pose: expected position and unit orientation");

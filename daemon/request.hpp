@@ -20,6 +20,7 @@ struct Request {
   RequestKind kind = RequestKind::query;
   std::string token;               ///< empty: none
   std::optional<double> ttl_s;     ///< subscribe
+  bool points = false;             ///< subscribe
   std::string query;               ///< query: "hello", "pose" or "health"
   std::optional<Pose> start_pose;  ///< reset
   SaveKind save = SaveKind::map;   ///< save

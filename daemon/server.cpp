@@ -31,7 +31,8 @@ Server::Server(boost::asio::io_context& io, const SubscribeConfig& config,
       config_(config),
       publish_(publish),
       actions_(std::move(actions)),
-      clients_(static_cast<std::size_t>(config.max_clients)),
+      clients_(static_cast<std::size_t>(config.max_clients),
+               static_cast<std::size_t>(config.points_clients)),
       answers_left_(kAnswersPerSecond),
       answers_to_unproven_left_(kAnswersToUnprovenPerSecond) {
   if (config.port == 0) return;
@@ -98,16 +99,9 @@ bool Server::may_be_served(const Request& request) const {
 
 void Server::serve(const Request& request) {
   switch (request.kind) {
-    case RequestKind::subscribe: {
-      const double ttl_s = std::clamp(request.ttl_s.value_or(config_.lease_s), kShortestLeaseS,
-                                      std::max(kShortestLeaseS, config_.lease_s));
-      if (clients_.renew(from_, monotonic_ns() + to_ns(ttl_s))) {
-        if (answers_left_ > 0) say_hello(ttl_s);
-      } else {
-        say_error("too many clients");
-      }
+    case RequestKind::subscribe:
+      subscribe(request);
       return;
-    }
     case RequestKind::unsubscribe:
       clients_.remove(from_);
       say_hello(0.0);
@@ -130,6 +124,18 @@ void Server::serve(const Request& request) {
       actions_.save(request.save,
                     [this, to = from_](const SaveResult& result) { say_saved(result, to); });
       return;
+  }
+}
+
+void Server::subscribe(const Request& request) {
+  const double ttl_s = std::clamp(request.ttl_s.value_or(config_.lease_s), kShortestLeaseS,
+                                  std::max(kShortestLeaseS, config_.lease_s));
+  const ClientTable::Client* client =
+      clients_.renew(from_, monotonic_ns() + to_ns(ttl_s), request.points);
+  if (client == nullptr) {
+    say_error("too many clients");
+  } else if (answers_left_ > 0) {
+    say_hello(ttl_s, client->has_points);
   }
 }
 
@@ -171,13 +177,19 @@ void Server::begin(JsonWriter& out) {
   out.text("session", actions_.session());
 }
 
-void Server::say_hello(double ttl_s) {
+void Server::say_hello(double ttl_s, bool points) {
   begin(json_);
   json_.begin_object("hello");
   json_.text("software", kSoftware);
   json_.number("ttl_s", ttl_s, 3);
   json_.text("frame_id", publish_.frame_id);
   json_.text("child_frame_id", publish_.child_frame_id);
+  if (points) {
+    json_.begin_object("points");
+    json_.integer("scan", config_.scan_points);
+    json_.integer("map", config_.map_points);
+    json_.end_object();
+  }
   json_.end_object();
   answer(json_.finish());
 }
@@ -227,6 +239,12 @@ void Server::send_to(std::string_view datagram, const Endpoint& to) {
 
 void Server::send(std::string_view datagram) {
   for (const ClientTable::Client& client : clients_.clients()) send_to(datagram, client.endpoint);
+}
+
+void Server::send_points(std::string_view datagram) {
+  for (const ClientTable::Client& client : clients_.clients()) {
+    if (client.has_points) send_to(datagram, client.endpoint);
+  }
 }
 
 void Server::tick() {

@@ -45,10 +45,13 @@ class Server {
   void configure(const SubscribeConfig& config) { config_ = config; }
   /// To all subscribers.
   void send(std::string_view datagram);
+  /// To those that have subscribed to points.
+  void send_points(std::string_view datagram);
   /// Once a second: ends leases, allows new answers.
   void tick();
 
   [[nodiscard]] std::size_t clients() const { return clients_.clients().size(); }
+  [[nodiscard]] bool has_points_clients() const { return clients_.points_clients() > 0; }
   [[nodiscard]] std::uint64_t requests_refused() const { return requests_refused_; }
   [[nodiscard]] std::uint64_t send_errors() const { return send_errors_; }
 
@@ -58,12 +61,13 @@ class Server {
   void await_request();
   void handle(std::string_view datagram);
   void serve(const Request& request);
+  void subscribe(const Request& request);
   void answer_query(const std::string& query);
   void say_saved(const SaveResult& result, const Endpoint& to);
   [[nodiscard]] bool is_known(const Endpoint& from) const;
   [[nodiscard]] bool is_proven(const ParsedRequest& parsed) const;
   [[nodiscard]] bool may_be_served(const Request& request) const;
-  void say_hello(double ttl_s);
+  void say_hello(double ttl_s, bool points = false);
   void say_error(std::string_view why) { say_error(why, from_); }
   void say_error(std::string_view why, const Endpoint& to);
   std::string_view write_token();

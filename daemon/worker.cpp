@@ -32,12 +32,14 @@ StageHook StageTimer::hook() {
 }
 
 Worker::Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready,
-               ReportRing& reports, Wakeup& report_ready, PipelineCounters& counters)
+               ReportRing& reports, PointsOutput points, Wakeup& report_ready,
+               PipelineCounters& counters)
     : config_(config),
       odometry_(config),
       scans_(scans),
       scan_ready_(scan_ready),
       reports_(reports),
+      points_(points),
       report_ready_(report_ready),
       counters_(counters) {}
 
@@ -54,6 +56,7 @@ void Worker::run() {
     if (resets != resets_) begin_again(resets);
     align(*slot);
     update_map(*slot);
+    if (counters_.points_asked.load(std::memory_order_relaxed)) report_points(*slot);
     scans_.release();
     if (counters_.behind.exchange(false, std::memory_order_acquire)) skip_to_newest();
   }
@@ -116,6 +119,20 @@ void Worker::report(const ScanSlot& slot, const Estimate& estimate) {
              .worker_minor_faults = minor_faults()};
   report->stage_ns[static_cast<std::size_t>(Stage::project)] += slot.extraction_ns;
   reports_.commit();
+  report_ready_.signal();
+}
+
+// The pose is out; who looks on waits for nobody's sake, and misses what finds no room.
+void Worker::report_points(const ScanSlot& slot) {
+  PointsReport* out = points_.ring.reserve();
+  if (out == nullptr) return;
+  out->seq = seq_ - 1;  // align() counted this scan
+  out->resets = resets_;
+  out->restarts = restarts_;
+  out->stamp_ns = slot.scan.end_ns;
+  odometry_->aligned_points(points_.most_of_scan, out->scan_m);
+  odometry_->mapped_points(points_.most_of_map, out->map_m);
+  points_.ring.commit();
   report_ready_.signal();
 }
 

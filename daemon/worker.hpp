@@ -18,12 +18,18 @@ struct StageTimer {
   StageHook hook();
 };
 
+/// Where points go, and how many of each kind a scan may bring.
+struct PointsOutput {
+  PointsRing& ring;
+  std::size_t most_of_scan = 0, most_of_map = 0;
+};
+
 /// Scans to poses, on a thread of its own. Never logs, never locks; allocates only where
 /// Odometry does, for a reset, and to copy the map.
 class Worker {
  public:
   Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready, ReportRing& reports,
-         Wakeup& report_ready, PipelineCounters& counters);
+         PointsOutput points, Wakeup& report_ready, PipelineCounters& counters);
 
   /// Until counters.stop; signal scan_ready after setting it.
   void run();
@@ -39,12 +45,14 @@ class Worker {
   void align(const ScanSlot& slot);
   void report(const ScanSlot& slot, const Estimate& estimate);
   void update_map(const ScanSlot& slot);
+  void report_points(const ScanSlot& slot);
 
   OdometryConfig config_;
   std::optional<Odometry> odometry_;
   ScanRing& scans_;
   Wakeup& scan_ready_;
   ReportRing& reports_;
+  PointsOutput points_;
   Wakeup& report_ready_;
   PipelineCounters& counters_;
   std::uint64_t seq_ = 0;

@@ -1,5 +1,6 @@
 #include "daemon/engine.hpp"
 #include "daemon/health_monitor.hpp"
+#include "daemon/points_message.hpp"
 #include "daemon/pose_message.hpp"
 #include "daemon/publisher.hpp"
 #include "daemon/receiver.hpp"
@@ -102,6 +103,19 @@ TEST(Allocation, PublishingAPoseHasNone) {
     sinks.send(write_pose(context, report, 1'000'000, json));
   }
   EXPECT_EQ(allocations - before, 0U);
+}
+
+// What was seen with a pose, in all its datagrams.
+TEST(Allocation, WritingPointsHasNone) {
+  const std::vector<Eigen::Vector3f> points_m(600, Eigen::Vector3f(1.0F, -2.0F, 3.0F));
+  const PointsContext context{"0123456789abcdef", 1'000'000'000, 17};
+  JsonWriter json;
+  std::size_t bytes = 0;
+  const std::uint64_t before = allocations;
+  for (std::size_t k = 0; k < points_datagrams(points_m.size()); ++k)
+    bytes += write_points(context, PointSet::scan, points_m, k, json).size();
+  EXPECT_EQ(allocations - before, 0U);
+  EXPECT_GT(bytes, 600U * 8U);
 }
 
 /// A sensor as fast as its packets are taken, but for a breath between two.

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <unistd.h>
 
@@ -41,6 +42,48 @@ TEST(Protocol, UnsubscribeAndQuery) {
   EXPECT_FALSE(client.receive(milliseconds(100)));
   EXPECT_TRUE(ask(client, lilod, R"({"query":"pose"})", "pose").contains("pose"));
   EXPECT_TRUE(ask(client, lilod, R"({"query":"health"})", "health").contains("health"));
+}
+
+// Who asked gets them with every pose, who did not gets none, and neither does a sink.
+TEST(Protocol, PointsGoToThoseWhoAsk) {
+  Lilod lilod;
+  ASSERT_TRUE(lilod.wait_ready());
+  UdpSocket looks_on, does_not;
+  const json granted =
+      ask(looks_on, lilod, R"({"subscribe":{"ttl_s":5,"points":true}})", "hello")["hello"];
+  EXPECT_EQ(granted["points"]["scan"], 600);
+  EXPECT_FALSE(ask(does_not, lilod, R"({"subscribe":{}})", "hello")["hello"].contains("points"));
+  Sensor sensor;
+  sensor.turn(lilod, 6.0);
+  std::map<std::uint64_t, std::size_t> datagrams_of_pose;
+  std::uint64_t last_pose = 0;
+  while (const auto datagram = looks_on.receive(milliseconds(500))) {
+    EXPECT_LE(datagram->size(), 1200U);
+    const json message = json::parse(*datagram);
+    EXPECT_EQ(violations(protocol_schema(), message), std::vector<std::string>{});
+    if (message.contains("pose")) last_pose = message["seq"];
+    if (!message.contains("points")) continue;
+    EXPECT_LE(message["seq"], last_pose) << "the pose goes first";
+    EXPECT_LT(message["points"]["index"], message["points"]["count"]);
+    ++datagrams_of_pose[message["seq"]];
+  }
+  EXPECT_GE(datagrams_of_pose.size(), 3U);
+  for (UdpSocket* socket : {&does_not, &lilod.sink()}) {
+    while (const auto datagram = socket->receive(milliseconds(100)))
+      EXPECT_FALSE(json::parse(*datagram).contains("points"));
+  }
+}
+
+TEST(Protocol, PointsCanBeSwitchedOff) {
+  Lilod lilod("  points_clients: 0\n");
+  ASSERT_TRUE(lilod.wait_ready());
+  UdpSocket client;
+  EXPECT_FALSE(
+      ask(client, lilod, R"({"subscribe":{"points":true}})", "hello")["hello"].contains("points"));
+  Sensor().turn(lilod, 3.0);
+  ASSERT_TRUE(next_of_kind(client, "pose"));
+  while (const auto datagram = client.receive(milliseconds(300)))
+    EXPECT_FALSE(json::parse(*datagram).contains("points"));
 }
 
 // Others use up all of the answers; a lease of one second is renewed for three.

@@ -17,6 +17,8 @@ TEST(Request, ReadsEveryKind) {
   EXPECT_EQ(subscribe.request->kind, RequestKind::subscribe);
   EXPECT_EQ(subscribe.request->ttl_s, 2.5);
   EXPECT_EQ(subscribe.request->token, "abc");
+  EXPECT_FALSE(subscribe.request->points);
+  EXPECT_TRUE(parse_request(R"({"subscribe":{"points":true}})").request->points);
   EXPECT_EQ(parse_request(R"({"unsubscribe":{}})").request->kind, RequestKind::unsubscribe);
   EXPECT_EQ(parse_request(R"({"query":"pose"})").request->query, "pose");
   const auto reset = parse_request(
@@ -32,9 +34,9 @@ TEST(Request, SaysWhatIsWrong) {
   for (
       const char* bad :
       {"", "x", "[]", "1", "null", "{}", R"({"subscribe":1})", R"({"subscribe":{"ttl_s":"5"}})",
-       R"({"subscribe":{"ttl_s":1e999}})", R"({"query":{}})", R"({"save":{}})",
-       R"({"save":"../map"})", R"({"token":5,"query":"pose"})", R"({"reset":{"pose":1}})",
-       R"({"reset":{"pose":{"position":{"x":1,"y":2,"z":3}}}})",
+       R"({"subscribe":{"ttl_s":1e999}})", R"({"subscribe":{"points":1}})", R"({"query":{}})",
+       R"({"save":{}})", R"({"save":"../map"})", R"({"token":5,"query":"pose"})",
+       R"({"reset":{"pose":1}})", R"({"reset":{"pose":{"position":{"x":1,"y":2,"z":3}}}})",
        R"({"reset":{"pose":{"position":{"x":1,"y":2,"z":3},"orientation":{"x":0,"y":0,"z":0,"w":2}}}})",
        R"({"subscribe":{}} {"subscribe":{}})"}) {
     const auto parsed = parse_request(bad);
@@ -80,6 +82,23 @@ TEST(ClientTable, IsBoundedAndForgets) {
   table.remove(client(1));
   table.remove(client(9));
   EXPECT_EQ(table.clients().size(), 1U);
+}
+
+TEST(ClientTable, BoundsThoseWithPoints) {
+  using boost::asio::ip::udp;
+  ClientTable table(4, 1);
+  const auto client = [](std::uint16_t port) {
+    return udp::endpoint(boost::asio::ip::address_v4::loopback(), port);
+  };
+  EXPECT_FALSE(table.renew(client(1), 100)->has_points) << "not asked for";
+  EXPECT_TRUE(table.renew(client(2), 100, true)->has_points);
+  EXPECT_FALSE(table.renew(client(1), 100, true)->has_points) << "only one may";
+  EXPECT_TRUE(table.renew(client(2), 200, true)->has_points) << "a renewal needs no room";
+  EXPECT_FALSE(table.renew(client(2), 200)->has_points) << "given back";
+  EXPECT_TRUE(table.renew(client(1), 200, true)->has_points);
+  EXPECT_EQ(table.points_clients(), 1U);
+  table.expire(200);
+  EXPECT_EQ(table.points_clients(), 0U);
 }
 
 }  // namespace

@@ -47,7 +47,8 @@ class WorkerTest : public testing::Test {
   ReportRing reports_{4};
   Wakeup scan_ready_{Wakeup::Mode::blocking}, report_ready_{Wakeup::Mode::polled};
   PipelineCounters counters_;
-  Worker worker_{{}, scans_, scan_ready_, reports_, report_ready_, counters_};
+  PointsRing points_{2};
+  Worker worker_{{}, scans_, scan_ready_, reports_, {points_, 50, 40}, report_ready_, counters_};
   std::size_t waiting_ = 0;
   std::uint64_t first_ = 0;
 };
@@ -89,6 +90,28 @@ TEST_F(WorkerTest, NeverWaitsForThePublisher) {
   EXPECT_EQ(reports().back().seq, 3U);
 }
 
+// Nothing is computed until a client asks. Of what then finds no room the worker takes no notice.
+TEST_F(WorkerTest, GivesPointsWhileTheyAreAskedFor) {
+  counters_.points_asked = true;
+  run_worker();
+  EXPECT_EQ(counters_.scans_processed, 5U);
+  ASSERT_EQ(points_.size(), 2U) << "the ring's slots";
+  for (std::uint64_t seq = 0; seq < 2; ++seq) {
+    const PointsReport* seen = points_.front();
+    EXPECT_EQ(seen->seq, seq);
+    EXPECT_EQ(seen->scan_m.size(), 50U);
+    for (const Eigen::Vector3f& p_m : seen->scan_m)
+      EXPECT_NEAR(p_m.norm(), 10.0F, 0.1F) << "the room's wall";
+    points_.release();
+  }
+}
+
+TEST_F(WorkerTest, GivesNoPointsUnasked) {
+  run_worker();
+  EXPECT_EQ(counters_.scans_processed, 5U);
+  EXPECT_EQ(points_.size(), 0U);
+}
+
 /// Both threads at once, as fast as they go. Slots: of the ring between them.
 class ReceiverAndWorker : public testing::TestWithParam<std::size_t> {};
 
@@ -103,7 +126,8 @@ TEST_P(ReceiverAndWorker, MakeThePosesOfOneThread) {
   ReportRing reports(32);
   Receiver receiver(std::make_unique<RoundRoomSource>(kPackets), sensor, {}, scans, scan_ready,
                     counters);
-  Worker worker({}, scans, scan_ready, reports, report_ready, counters);
+  PointsRing points(4);
+  Worker worker({}, scans, scan_ready, reports, {points, 0, 0}, report_ready, counters);
   std::thread working([&] { worker.run(); });
   std::thread receiving([&] { receiver.run(); });
   receiving.join();
