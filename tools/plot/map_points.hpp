@@ -2,8 +2,8 @@
 
 #include "core/pose.hpp"
 #include "core/scan.hpp"
+#include "tools/plot/placed_returns.hpp"
 
-#include <cstdint>
 #include <vector>
 
 namespace lilo {
@@ -28,8 +28,8 @@ class MapPoints {
   std::vector<Eigen::Vector3f> points_;
   std::size_t stride_ = 1;
   bool any_ = false;
-  Pose previous_, taken_;
-  std::int64_t previous_ns_ = 0;
+  Pose taken_;
+  ReturnPlacer placer_;
 };
 
 }  // namespace lilo

@@ -5,6 +5,7 @@
 #include "tools/bench/paper/cell.hpp"
 #include "tools/cli.hpp"
 #include "tools/eval/associate.hpp"
+#include "tools/eval/pose_stream.hpp"
 #include "tools/plot/error_chart.hpp"
 #include "tools/plot/features_view.hpp"
 #include "tools/plot/scan_view.hpp"
@@ -64,13 +65,25 @@ MapPoints build_map(ScanSource& source, const Trajectory& trajectory) {
   return map;
 }
 
+/// Poses, or recorded datagrams.
 std::vector<Trajectory> read_estimates(const std::vector<std::string>& files) {
   std::vector<Trajectory> estimates;
   for (const std::string& file : files) {
-    estimates.push_back(read_trajectory(file));
+    estimates.push_back(is_pose_stream(file) ? trajectory(read_pose_stream(file))
+                                             : read_trajectory(file));
     estimates.back().name = files.size() == 1 ? "estimate" : base_name(file);
   }
   return estimates;
+}
+
+void mark_statuses(const std::string& file, Track& track) {
+  std::vector<TrackingStatus> statuses;
+  std::vector<int> sessions;
+  for (const SaidPose& said : read_pose_stream(file).poses) {
+    statuses.push_back(said.status);
+    sessions.push_back(said.session);
+  }
+  mark(track, statuses, sessions);
 }
 
 void plot_errors(const PlotOptions& options) {
@@ -87,7 +100,12 @@ void plot_trajectories(const PlotOptions& options) {
   const std::string subject =
       options.input.empty() ? base_name(options.trajectories[0]) : recording_name(options.input);
   const std::string& title = options.title.empty() ? subject : options.title;
-  draw(trajectory_view(title, estimates, truth, map)).save(options.out);
+  TopView view = trajectory_view(title, estimates, truth, map);
+  for (std::size_t k = 0; k < options.trajectories.size(); ++k) {
+    if (is_pose_stream(options.trajectories[k]))
+      mark_statuses(options.trajectories[k], view.tracks[k]);
+  }
+  draw(view).save(options.out);
 }
 
 /// UTC, or seconds where a data set counts from its own start.
@@ -148,8 +166,10 @@ void run_plot(const PlotOptions& options) {
 void add_plot_command(CLI::App& app) {
   auto options = std::make_shared<PlotOptions>();
   CLI::App* sub = app.add_subcommand("plot", "Draw trajectories on their map, or one scan");
-  sub->add_option("TRAJECTORY", options->trajectories,
-                  "TUM or KITTI poses; the map is the first's");
+  sub->add_option(
+      "TRAJECTORY", options->trajectories,
+      "TUM or KITTI poses, or recorded datagrams, which tell status and sessions; the map is "
+      "the first's");
   auto* truth = sub->add_option(
       "--truth", options->truth,
       "True poses, laid over the first trajectory's start; or the folder of a data set");

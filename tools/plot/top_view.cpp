@@ -19,6 +19,12 @@ constexpr Color kTruth{255, 255, 255};
 constexpr std::array<Color, 4> kTracks{
     {{255, 122, 69}, {90, 200, 250}, {190, 140, 255}, {255, 214, 10}}};
 
+/// By TrackingStatus, as `lilo view` colours them.
+constexpr std::array<Color, 4> kStatuses{
+    {{177, 140, 255}, {53, 196, 111}, {255, 176, 32}, {255, 90, 82}}};
+constexpr std::array<const char*, 4> kStatusNames{"initializing", "tracking", "degraded", "lost"};
+constexpr Color kMissing{150, 160, 174};
+
 constexpr int kWidth = 1600, kHeader = 96, kFooter = 64, kSide = 32;
 constexpr int kLeastHeight = 480, kMostHeight = 960;
 constexpr double kLeastMargin_m = 12.0;
@@ -84,14 +90,48 @@ std::vector<Dot> dots_of(const std::vector<Eigen::Vector3f>& points, const Proje
   return dots;
 }
 
+std::size_t status_at(const Track& track, std::size_t k) {
+  return k < track.statuses.size() ? static_cast<std::size_t>(track.statuses[k]) : 0;
+}
+
+std::vector<Eigen::Vector2d> points_between(const std::vector<Eigen::Vector2d>& line,
+                                            std::size_t first, std::size_t last) {
+  const auto begin = line.begin() + static_cast<std::ptrdiff_t>(first);
+  return {begin, line.begin() + static_cast<std::ptrdiff_t>(last + 1)};
+}
+
+/// Where nothing was seen.
+void draw_dots(Canvas& canvas, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  constexpr double kEvery = 8.0;  // pixels
+  const double length = (to - from).norm();
+  for (double at = kEvery; at < length; at += kEvery)
+    canvas.disc(from + (to - from) * (at / length), 1.3, kMissing);
+}
+
+bool is_by_status(const TopView& view) {
+  return view.tracks.size() == 1 && !view.tracks.front().statuses.empty();
+}
+
 void draw_track(Canvas& canvas, const Track& track, const Projection& to_pixels, const Color& color,
-                double width) {
+                double width, bool by_status = false) {
   std::vector<Eigen::Vector2d> line;
   for (const Eigen::Vector3d& p : track.positions_m) {
     line.push_back(to_pixels(p.x(), p.y()) + Eigen::Vector2d(0.0, kHeader));
   }
-  if (line.empty()) return;
-  canvas.polyline(line, color, width);
+  // Pieces of one colour without a break; each takes the last point of the one before along.
+  std::size_t begin = 0;
+  auto next_break = track.breaks.begin();
+  for (std::size_t k = 1; k <= line.size(); ++k) {
+    const bool breaks = next_break != track.breaks.end() && *next_break == k;
+    const bool ends = k == line.size() || breaks || status_at(track, k) != status_at(track, begin);
+    if (!ends) continue;
+    const std::size_t last = k == line.size() || breaks ? k - 1 : k;
+    const Color& piece = by_status ? kStatuses.at(status_at(track, begin)) : color;
+    canvas.polyline(points_between(line, begin, last), piece, width);
+    if (breaks && k < line.size()) draw_dots(canvas, line[k - 1], line[k]);
+    while (next_break != track.breaks.end() && *next_break <= k) ++next_break;
+    begin = k;
+  }
 }
 
 void draw_ends(Canvas& canvas, const Track& track, const Projection& to_pixels,
@@ -117,6 +157,15 @@ void draw_legend(Canvas& canvas, const TopView& view) {
     x -= 34.0 + 32.0;
   };
   if (view.truth) entry(view.truth->name, kTruth, 5.0);
+  if (is_by_status(view)) {
+    const auto& said = view.tracks.front().statuses;
+    for (std::size_t k = kStatuses.size(); k-- > 0;) {
+      const bool any =
+          std::find(said.begin(), said.end(), static_cast<TrackingStatus>(k)) != said.end();
+      if (any) entry(kStatusNames.at(k), kStatuses.at(k), 2.5);
+    }
+    return;
+  }
   for (std::size_t k = view.tracks.size(); k-- > 0;) {
     entry(view.tracks[k].name, kTracks.at(k % kTracks.size()), 2.5);
   }
@@ -159,6 +208,13 @@ void draw_heights(Canvas& canvas, const std::vector<Dot>& dots, double y) {
               Align::right);
 }
 
+/// Of the marks at both ends.
+Color end_color(const TopView& view, std::size_t k) {
+  if (!is_by_status(view)) return kTracks.at(k % kTracks.size());
+  const Track& track = view.tracks[k];
+  return kStatuses.at(status_at(track, track.statuses.size() - 1));
+}
+
 }  // namespace
 
 Canvas draw(const TopView& view) {
@@ -169,8 +225,8 @@ Canvas draw(const TopView& view) {
   if (view.truth) draw_track(canvas, *view.truth, to_pixels, kTruth, 5.0);
   for (std::size_t k = 0; k < view.tracks.size(); ++k) {
     const Color& color = kTracks.at(k % kTracks.size());
-    draw_track(canvas, view.tracks[k], to_pixels, color, 2.5);
-    draw_ends(canvas, view.tracks[k], to_pixels, color);
+    draw_track(canvas, view.tracks[k], to_pixels, color, 2.5, is_by_status(view));
+    draw_ends(canvas, view.tracks[k], to_pixels, end_color(view, k));
   }
   draw_header(canvas, view);
   const double footer_y = kHeader + to_pixels.height + 38.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/estimate.hpp"
 #include "tools/plot/canvas.hpp"
 
 #include <optional>
@@ -12,9 +13,12 @@ namespace lilo {
 struct Track {
   std::string name;
   std::vector<Eigen::Vector3d> positions_m;
+  std::vector<std::size_t> breaks;       ///< positions before which some are missing, ascending
+  std::vector<TrackingStatus> statuses;  ///< of each position; empty: not known
 };
 
-/// A picture of what was driven, seen from above.
+/// A picture of what was driven, seen from above. A track that is alone and knows its statuses is
+/// coloured by them; where poses are missing, a track is dotted.
 struct TopView {
   std::string title, subtitle;
   std::vector<Track> tracks;

@@ -17,4 +17,9 @@ namespace lilo {
 TopView trajectory_view(const std::string& title, const std::vector<Trajectory>& estimates,
                         const std::optional<Trajectory>& truth, const MapPoints& map);
 
+/// Says of a track what the sender said of its poses: their statuses, in their order. Another
+/// session begins after a break.
+void mark(Track& track, const std::vector<TrackingStatus>& statuses,
+          const std::vector<int>& sessions = {});
+
 }  // namespace lilo

@@ -50,6 +50,7 @@ OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const
     if (run.poses.empty()) first_ns = scan.start_ns;
     run.recorded_s = static_cast<double>(scan.end_ns - first_ns) * 1e-9;
     run.poses.push_back({estimate.stamp_ns, estimate.T_odom_sensor});
+    run.statuses.push_back(estimate.status);
     ++run.status_counts[static_cast<std::size_t>(estimate.status)];
     note_size(estimate, run);
     seen(scan, estimate);

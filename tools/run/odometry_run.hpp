@@ -15,6 +15,7 @@ namespace lilo {
 /// A recording taken through the odometry.
 struct OdometryRun {
   std::vector<StampedPose> poses;                ///< one a scan
+  std::vector<TrackingStatus> statuses;          ///< of each
   std::array<std::uint64_t, 4> status_counts{};  ///< scans, by TrackingStatus
   DriverCounts driver_counts;
   SourceCounts source_counts;

@@ -1,11 +1,7 @@
 #pragma once
 
-#include "config/config.hpp"
-#include "core/estimate.hpp"
-#include "core/scan.hpp"
-#include "daemon/pose_message.hpp"
+#include "tools/run/datagram_writer.hpp"
 
-#include <cstdint>
 #include <fstream>
 #include <string>
 
@@ -26,17 +22,9 @@ class PoseLog {
   void finish();
 
  private:
-  [[nodiscard]] Estimate placed(const Estimate& estimate) const;
-
   std::string path_;
   std::ofstream file_;
-  PoseMessageContext message_;
-  Pose T_base_sensor_;
-  bool mounted_;                // T_base_sensor is not the identity
-  std::uint64_t seq_ = 0;       // of the next pose
-  std::uint32_t restarts_ = 0;  // before the session
-  std::int64_t last_ns_;        // monotonic: the pose before was written
-  JsonWriter json_;
+  DatagramWriter writer_;
 };
 
 }  // namespace lilo

@@ -1,17 +1,21 @@
 #include "tools/run/run_command.hpp"
 
 #include "tools/bench/benchmark_set.hpp"
+#include "tools/cli.hpp"
 #include "tools/plot/trajectory_view.hpp"
 #include "tools/progress_bar.hpp"
+#include "tools/run/map_file.hpp"
 #include "tools/run/odometry_run.hpp"
 #include "tools/run/pose_log.hpp"
 #include "tools/run/run_report.hpp"
+#include "tools/run/voxel_map.hpp"
 #include "tools/text_file.hpp"
 #include "tools/tool_config.hpp"
 
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -21,24 +25,34 @@ namespace {
 
 struct RunOptions {
   std::string input, config, profile, sensor;
-  std::string tum, kitti, poses, stats, picture, truth, title;
+  std::string tum, kitti, poses, stats, picture, truth, title, map;
+  double map_voxel_m = 0.1;
+  MapColor map_color = MapColor::height;
 };
 
 /// A result that cannot be written is better known before the work than after it.
 void try_outputs(const RunOptions& options) {
-  for (const std::string* path : {&options.tum, &options.kitti, &options.stats, &options.picture}) {
+  for (const std::string* path :
+       {&options.tum, &options.kitti, &options.stats, &options.picture, &options.map}) {
     if (!path->empty()) (void)create_text(*path);
   }
 }
 
-OdometryRun run_with_progress(ScanSource& source, const Config& config, MapPoints* map,
-                              PoseLog* log) {
+/// What is made of every scan besides its pose.
+struct Followers {
+  std::optional<MapPoints> picture;
+  std::optional<PoseLog> log;
+  std::optional<VoxelMap> map;
+};
+
+OdometryRun run_with_progress(ScanSource& source, const Config& config, Followers& followers) {
   ProgressBar bar;
   std::size_t scans = 0;
   return run_odometry(source, config.odometry, [&](const Scan& scan, const Estimate& estimate) {
     ++scans;
-    if (log != nullptr) log->add(scan, estimate);
-    if (map != nullptr) map->add(scan, estimate.T_odom_sensor);
+    if (followers.log) followers.log->add(scan, estimate);
+    if (followers.picture) followers.picture->add(scan, estimate.T_odom_sensor);
+    if (followers.map) followers.map->add(scan, estimate.T_odom_sensor);
     if (bar.due()) bar.show(source.progress(), fmt::format("{} scans", scans));
   });
 }
@@ -49,10 +63,12 @@ void write_picture(const RunOptions& options, const OdometryRun& run, const MapP
   if (!options.truth.empty()) truth = read_truth(options.truth);
   const std::string file_name = std::filesystem::path(options.input).filename().string();
   const std::string& title = options.title.empty() ? file_name : options.title;
-  draw(trajectory_view(title, {estimate}, truth, map)).save(options.picture);
+  TopView view = trajectory_view(title, {estimate}, truth, map);
+  mark(view.tracks.front(), run.statuses);
+  draw(view).save(options.picture);
 }
 
-void write_results(const RunOptions& options, const OdometryRun& run, const MapPoints& map) {
+void write_results(const RunOptions& options, const OdometryRun& run, const Followers& followers) {
   if (!options.tum.empty()) write_tum(options.tum, run.poses);
   if (!options.kitti.empty()) write_kitti(options.kitti, run.poses);
   if (!options.stats.empty()) {
@@ -60,20 +76,25 @@ void write_results(const RunOptions& options, const OdometryRun& run, const MapP
     file << to_json(run);
     finish_text(file, options.stats);
   }
-  if (!options.picture.empty()) write_picture(options, run, map);
+  if (followers.picture) write_picture(options, run, *followers.picture);
+  if (followers.map) {
+    write_map(options.map, followers.map->points(), options.map_color);
+    fmt::print("map {}: {} points, one a voxel of {:g} m\n", options.map,
+               followers.map->points().size(), followers.map->voxel_m());
+  }
 }
 
 void run_run(const RunOptions& options) {
   const Config config = tool_config(options.config, options.profile, options.sensor);
   const std::unique_ptr<ScanSource> source = open_scans(options.input, config.sensor);
   try_outputs(options);
-  std::optional<PoseLog> log;
-  if (!options.poses.empty()) log.emplace(options.poses, config.publish);
-  MapPoints map;
-  const OdometryRun run = run_with_progress(
-      *source, config, options.picture.empty() ? nullptr : &map, log ? &*log : nullptr);
-  if (log) log->finish();
-  write_results(options, run, map);
+  Followers followers;
+  if (!options.poses.empty()) followers.log.emplace(options.poses, config.publish);
+  if (!options.picture.empty()) followers.picture.emplace();
+  if (!options.map.empty()) followers.map.emplace(options.map_voxel_m);
+  const OdometryRun run = run_with_progress(*source, config, followers);
+  if (followers.log) followers.log->finish();
+  write_results(options, run, followers);
   if (!run.poses.empty()) fmt::print("{}", to_text(run));
   if (!run.failure.empty()) throw std::runtime_error(run.failure);
   if (run.poses.empty()) {
@@ -99,6 +120,20 @@ void add_run_command(CLI::App& app) {
                   "Write what lilod would send, a JSON object a line: status, covariance and all");
   sub->add_option("--stats", options->stats, "Write scans, losses, CPU times, memory as JSON");
   sub->add_option("--picture,--map-png", options->picture, "Draw trajectory and map from above");
+  auto* map = sub->add_option("--map", options->map, "Write the whole drive's map, .ply or .pcd")
+                  ->check([](const std::string& path) {
+                    return is_map_file(path) ? std::string()
+                                             : "expected a file .ply or .pcd, found '" + path + "'";
+                  });
+  sub->add_option("--map-voxel-m", options->map_voxel_m, "One point of the map a cube of this edge")
+      ->capture_default_str()
+      ->check(within(0.01, 10.0))
+      ->needs(map);
+  const std::map<std::string, MapColor> colors{{"height", MapColor::height},
+                                               {"intensity", MapColor::intensity}};
+  sub->add_option("--map-color", options->map_color, "What its colours tell: height, intensity")
+      ->transform(CLI::CheckedTransformer(colors))
+      ->needs(map);
   sub->add_option("--truth", options->truth,
                   "True poses for the picture, or the folder of a data set");
   sub->add_option("--title", options->title, "Of the picture");
