@@ -6,6 +6,7 @@
 #include "tools/replay/replay_command.hpp"
 #include "tools/run/run_command.hpp"
 #include "tools/sim/sim_command.hpp"
+#include "tools/view/view_command.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -29,6 +30,7 @@ int run(int argc, char** argv) {
   lilo::add_replay_command(app);
   lilo::add_listen_command(app);
   lilo::add_sim_command(app);
+  lilo::add_view_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version

@@ -22,8 +22,8 @@ bool take(std::vector<std::uint64_t>& table, std::uint64_t key) {
 
 std::uint64_t VoxelMap::voxel_of(const Eigen::Vector3f& p_m) const {
   const auto part = [&](float v_m) {
-    return static_cast<std::uint64_t>(std::llround(std::floor(v_m / voxel_m_)) + (1 << 20)) &
-           0x1FFFFFU;
+    const auto cell = std::llround(std::floor(double{v_m} / voxel_m_));
+    return static_cast<std::uint64_t>(cell + (1 << 20)) & 0x1FFFFFU;
   };
   // 21 bits an axis: 200 km of voxels of 10 cm. The top bit tells it from an empty place.
   return 1ULL << 63U | part(p_m.x()) | part(p_m.y()) << 21U | part(p_m.z()) << 42U;

@@ -1,0 +1,80 @@
+#include "tools/view/recording.hpp"
+
+#include "core/odometry.hpp"
+#include "drivers/scan_source.hpp"
+#include "tools/run/datagram_writer.hpp"
+#include "tools/text_file.hpp"
+
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <utility>
+
+namespace lilo::view {
+namespace {
+
+// Most points a scan, more than lilod sends by default: no network lies between.
+constexpr std::size_t kScanPoints = 1000, kMapPoints = 1000;
+constexpr std::size_t kTellEvery = 20;  // scans
+
+using Work = std::function<void(const std::atomic<bool>& stop)>;
+
+Work play_scans(const std::string& path, const Config& config, Recording::Take take,
+                Recording::Tell tell) {
+  std::shared_ptr<ScanSource> source = open_scans(path, config.sensor);
+  return [=](const std::atomic<bool>& stop) {
+    Odometry odometry(config.odometry);
+    DatagramWriter writer(config.publish);
+    Scan scan;
+    for (std::size_t k = 0; !stop && source->next(scan); ++k) {
+      take(writer.pose(scan, odometry.process(scan)));
+      writer.points(odometry, kScanPoints, kMapPoints, take);
+      if (k % kTellEvery == 0) tell({.progress = source->progress(), .done = false, .error = {}});
+    }
+    tell({.progress = 1.0, .done = true, .error = source->error()});
+  };
+}
+
+Work play_lines(const std::string& path, Recording::Take take, Recording::Tell tell) {
+  auto file = std::make_shared<std::ifstream>(open_text(path));
+  const auto size = static_cast<double>(std::filesystem::file_size(path));
+  return [=](const std::atomic<bool>& stop) {
+    double read = 0.0;
+    std::size_t lines = 0;
+    for (std::string line; !stop && std::getline(*file, line); ++lines) {
+      read += static_cast<double>(line.size() + 1);
+      if (!line.empty()) take(line);
+      if (lines % (kTellEvery * kTellEvery) == 0)
+        tell({.progress = read / size, .done = false, .error = {}});
+    }
+    tell({.progress = 1.0, .done = true, .error = {}});
+  };
+}
+
+Work work_for(const std::string& path, const Config& config, Recording::Take take,
+              const Recording::Tell& tell) {
+  if (std::filesystem::path(path).extension() == ".jsonl")
+    return play_lines(path, std::move(take), tell);
+  return play_scans(path, config, std::move(take), tell);
+}
+
+}  // namespace
+
+Recording::Recording(const std::string& path, const Config& config, Take take, Tell tell) {
+  Work work = work_for(path, config, std::move(take), tell);
+  thread_ = std::thread([this, work = std::move(work), tell = std::move(tell)] {
+    try {
+      work(stop_);
+    } catch (const std::exception& error) {
+      tell({.progress = 1.0, .done = true, .error = error.what()});
+    }
+  });
+}
+
+Recording::~Recording() {
+  stop_ = true;
+  thread_.join();
+}
+
+}  // namespace lilo::view
