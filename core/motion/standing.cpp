@@ -8,7 +8,6 @@ constexpr int kStillScans = 5;       // on end: it stands
 constexpr double kAway_m = 0.1;      // it has set off
 constexpr double kPlace_m = 0.005;   // 1 sigma
 constexpr double kSetOff_mps = 0.3;  // 1 sigma: it may set off at any time
-constexpr double kAsWell = 0.95;     // of what fits from the prediction
 
 }  // namespace
 
@@ -48,10 +47,6 @@ Prior Standing::hypothesis(Prior prior) const {
   believe(kTranslation, kPlace_m);
   believe(kVelocity, kSetOff_mps);
   return prior;
-}
-
-bool fits_as_well(double standing_inliers, double moving_inliers) {
-  return standing_inliers > kAsWell * moving_inliers;
 }
 
 }  // namespace lilo::core

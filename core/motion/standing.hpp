@@ -28,8 +28,4 @@ class Standing {
   bool stands_ = false;
 };
 
-/// Whether a scan fits from where the sensor stood as well as from the prediction.
-/// By the sums of robust weights of structure.
-bool fits_as_well(double standing_inliers, double moving_inliers);
-
 }  // namespace lilo::core

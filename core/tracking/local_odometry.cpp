@@ -1,5 +1,7 @@
 #include "core/tracking/local_odometry.hpp"
 
+#include "core/registration/comparison.hpp"
+
 #include <Eigen/LU>
 
 namespace lilo::core {
@@ -33,7 +35,7 @@ Solution LocalOdometry::align_moving_or_standing(const std::vector<Feature>& fea
   Solution moving = align(features, prior, finest_level);
   if (!standing_.is_likely()) return moving;
   Solution standing = align(features, standing_.hypothesis(prior), finest_level);
-  return fits_as_well(standing.structure_inliers, moving.structure_inliers) ? standing : moving;
+  return fits_as_well(standing, moving) && tells_apart(standing, moving) ? standing : moving;
 }
 
 void LocalOdometry::accept(const ScanTiming& scan, const Solution& solution) {

@@ -1,50 +1,12 @@
-// A sensor that stands is not dragged along by what sets off around it.
+// When a sensor is supposed to stand, and when a scan may say so.
 #include "core/motion/standing.hpp"
 
-#include "core/odometry.hpp"
-#include "tests/core/analytic_scene.hpp"
+#include "core/registration/comparison.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <random>
-
-namespace lilo {
+namespace lilo::core {
 namespace {
-
-using core::Prior;
-using core::Standing;
-
-const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
-
-/// A road between two walls with posts along it, and a lane of vehicles on either side of the
-/// sensor that set off at 0.5 m/s2 a second after the start.
-test::Scene jam(double t_s) {
-  constexpr double kSetOff_s = 1.0, kAcceleration_mps2 = 0.5;
-  const double since_s = std::max(0.0, t_s - kSetOff_s);
-  const double by_m = 0.5 * kAcceleration_mps2 * since_s * since_s;
-  test::Scene scene;
-  scene.planes = {{{0.0, 0.0, 1.0}, -1.5}, {{0.0, -1.0, 0.0}, -12.0}, {{0.0, 1.0, 0.0}, -12.0}};
-  for (int k = -3; k <= 3; ++k) {
-    for (const double side : {-1.0, 1.0}) {
-      scene.poles.push_back({7.0 * k + 2.0 * side, 9.0 * side, 0.3, 4.0});
-      scene.poles.push_back({6.0 * k + 1.0 * side + by_m, 3.4 * side, 0.9, 1.6});
-    }
-  }
-  return scene;
-}
-
-TEST(Standing, WhatSetsOffAroundTheSensorDoesNotDragIt) {
-  Odometry odometry{OdometryConfig{}};
-  std::mt19937 rng(1);
-  for (int k = 0; k < 40; ++k) {
-    Scan scan = test::scan_of(
-        jam(0.1 * k), k16, 900, [](double) { return Pose{}; }, static_cast<std::uint64_t>(k));
-    test::add_range_noise(scan, 0.02F, rng);
-    const Estimate e = odometry.process(scan);
-    EXPECT_LT(e.T_odom_sensor.translation_m.norm(), 0.05) << "scan " << k;
-  }
-}
 
 TEST(Standing, IsSupposedAfterFiveScansWithoutMotionAndUntilTheSensorIsAway) {
   Standing standing;
@@ -85,5 +47,27 @@ TEST(Standing, TheHypothesisIsThePlaceWithoutSpeedAndKeepsWhatIsKnownOfRotation)
   EXPECT_GT(still.begin_information(3, 3), 1.0 / (0.01 * 0.01));
 }
 
+/// An alignment that ends `x_m` ahead, whose scan tells of x `times` as much as its duration does.
+Solution alignment(double x_m, double structure_inliers, double times) {
+  Solution solution;
+  solution.trajectory.T_begin.translation_m.x() = x_m;
+  solution.trajectory.knots = Unknowns::Zero(2 * kKnotSize);
+  solution.structure_inliers = structure_inliers;
+  solution.motion_information = Matrix6d::Identity();
+  solution.data_information = 1e4 * Matrix6d::Identity();
+  solution.data_information(3, 3) = times;
+  return solution;
+}
+
+TEST(Comparison, AnAlignmentFitsAsWellThatLosesLessThanATwentieth) {
+  EXPECT_TRUE(fits_as_well(alignment(0.0, 96.0, 100.0), alignment(0.1, 100.0, 100.0)));
+  EXPECT_FALSE(fits_as_well(alignment(0.0, 94.0, 100.0), alignment(0.1, 100.0, 100.0)));
+}
+
+TEST(Comparison, ACorridorDoesNotTellAPlaceFromAnotherAlongIt) {
+  EXPECT_TRUE(tells_apart(alignment(0.0, 100.0, 50.0), alignment(0.1, 100.0, 50.0)));
+  EXPECT_FALSE(tells_apart(alignment(0.0, 100.0, 5.0), alignment(0.1, 100.0, 5.0)));
+}
+
 }  // namespace
-}  // namespace lilo
+}  // namespace lilo::core
