@@ -35,6 +35,16 @@ inline std::optional<json> next_of_kind(UdpSocket& socket, const std::string& ki
   return std::nullopt;
 }
 
+/// The first health datagram in which `member` is `value`, of the next fifteen; null if none is.
+template <typename Value>
+json health_where(UdpSocket& socket, const char* member, const Value& value) {
+  for (int k = 0; k < 15; ++k) {
+    const auto message = next_of_kind(socket, "health");
+    if (message && (*message)["health"][member] == value) return *message;
+  }
+  return {};
+}
+
 inline json ask(UdpSocket& client, const Lilod& lilod, const std::string& request,
                 const std::string& kind) {
   client.send_to(lilod.server_port(), request);

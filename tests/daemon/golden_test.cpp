@@ -8,8 +8,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
-#include <thread>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -105,21 +105,38 @@ class Golden : public testing::TestWithParam<Drive> {
                          std::to_string(lilod.data_port()), "--position-port",
                          std::to_string(lilod.position_port())});
     EXPECT_EQ(replay.wait(seconds(60)), 0) << replay.standard_error();
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // what waits is worked off
-    EXPECT_EQ(lilod.stop(), 0);                                    // the last health says all
     std::vector<json> poses;
     json counts;
-    while (const auto datagram = lilod.sink().receive(std::chrono::milliseconds(100))) {
-      const json message = json::parse(*datagram);
-      EXPECT_EQ(violations(protocol_schema(), message), std::vector<std::string>{}) << *datagram;
+    const auto take = [&](const json& message) {
       if (message.contains("pose")) poses.push_back(masked(message));
       if (message.contains("health")) counts = counts_of(message);
+    };
+    while (const auto message = next(lilod, seconds(10))) {
+      take(*message);
+      if (message->contains("health") && all_is_worked_off((*message)["health"])) break;
     }
+    EXPECT_EQ(lilod.stop(), 0);  // the last health says all
+    while (const auto message = next(lilod, std::chrono::milliseconds(100))) take(*message);
     poses.push_back(counts);
     return poses;
   }
 
  private:
+  static std::optional<json> next(Lilod& lilod, std::chrono::milliseconds patience) {
+    const auto datagram = lilod.sink().receive(patience);
+    if (!datagram) return std::nullopt;
+    json message = json::parse(*datagram);
+    EXPECT_EQ(violations(protocol_schema(), message), std::vector<std::string>{}) << *datagram;
+    return message;
+  }
+
+  static bool all_is_worked_off(const json& health) {
+    const json& scans = health["scans"];
+    return health["status"] == "silent" &&
+           scans["processed"].get<int>() + scans["dropped"].get<int>() ==
+               scans["complete"].get<int>() + scans["partial"].get<int>();
+  }
+
   std::string folder_;
 };
 

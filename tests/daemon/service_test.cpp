@@ -141,12 +141,9 @@ TEST(Sensor, UnpluggedAndReplugged) {
   ASSERT_TRUE(lilod.wait_ready());
   Sensor().turn(lilod, 3.0);
   const json before = next_of_kind(lilod.sink(), "pose").value_or(json());
-  std::this_thread::sleep_for(milliseconds(1600));
-  while (lilod.sink().receive(milliseconds(0))) {
-  }
-  const json silent = next_of_kind(lilod.sink(), "health").value_or(json());
-  EXPECT_EQ(silent["health"]["status"], "silent");
-  EXPECT_GT(silent["health"]["pose_age_s"], 1.0);
+  const json silent = health_where(lilod.sink(), "status", "silent");
+  ASSERT_FALSE(silent.is_null());
+  EXPECT_GT(silent["health"]["pose_age_s"], 0.5);
   EXPECT_EQ(silent["health"]["complaints"][0], "sensor silent");
   EXPECT_GT(silent["health"]["sensor_silent_s"], 1.0);
   Sensor().turn(lilod, 3.0);  // its clock starts again
