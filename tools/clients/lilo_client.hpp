@@ -1,27 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Poses from lilod, in one header: C++17, POSIX sockets, nothing else. daemon/PROTOCOL.md.
+// Poses from lilod, in one header: C++17, POSIX sockets, nothing else. lilo-protocol(7).
 //
 //   lilo::Client client;                      // 127.0.0.1:9871
 //   lilo::ClientPose pose;
 //   while (client.next(pose)) std::cout << pose.status << ' ' << pose.position[0] << '\n';
+//   std::cerr << client.why() << '\n';        // why there was none
 
-#include <arpa/inet.h>
+#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <map>
-#include <netinet/in.h>
+#include <netdb.h>
 #include <poll.h>
+#include <stdexcept>
 #include <string>
 #include <sys/socket.h>
 #include <system_error>
 #include <unistd.h>
 #include <vector>
+#if !defined(__cpp_lib_to_chars)
+#include <locale>
+#include <sstream>
+#endif
 
 namespace lilo {
 
@@ -32,9 +38,12 @@ struct ClientWeakDirection {
 };
 
 struct ClientPose {
-  std::string session;     // a new one: lilod started again, or was reset
-  std::uint64_t seq = 0;   // a gap: datagrams were missed
-  double timestamp = 0.0;  // UTC, s
+  std::string session;
+  bool new_session = false;   // the first pose, or of another session than the one before: another
+                              // origin, so compare it with no earlier pose
+  std::uint64_t seq = 0;      // a gap within a session: datagrams were missed
+  double timestamp = 0.0;     // UTC, s
+  std::int64_t stamp_ns = 0;  // the same, exactly
   std::string frame_id, child_frame_id;
   std::string status;                         // initializing, tracking, degraded, lost
   std::array<double, 3> position{};           // m
@@ -54,19 +63,45 @@ class FlatJson {
     good_ = value("") && (skip(), at_ == text_.size());
   }
   bool good() const { return good_; }
-  bool has(const std::string& path) const {
-    const auto found = scalars_.find(path);
-    return found != scalars_.end();
-  }
+  bool has(const std::string& path) const { return scalars_.count(path) > 0; }
   std::string text(const std::string& path) const {
     const auto found = scalars_.find(path);
     return found == scalars_.end() ? std::string() : found->second;
   }
-  double number(const std::string& path) const { return std::strtod(text(path).c_str(), nullptr); }
+  /// NaN when there is none. Never by the locale: where the comma is the decimal sign, strtod reads
+  /// 38.172 as 38.
+  double number(const std::string& path) const {
+    const std::string digits = text(path);
+    double out = std::nan("");
+#if defined(__cpp_lib_to_chars)
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
+    const bool whole = error == std::errc{} && end == digits.data() + digits.size();
+#else
+    std::istringstream in(digits);
+    in.imbue(std::locale::classic());
+    const bool whole = (in >> out) && in.peek() == std::istringstream::traits_type::eof();
+#endif
+    return whole ? out : std::nan("");
+  }
+  /// False, and `out` untouched, when it is no whole number or does not fit.
+  template <typename Integer>
+  bool integer(const std::string& path, Integer& out) const {
+    const std::string digits = text(path);
+    Integer read{};
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), read);
+    if (error != std::errc{} || digits.empty() || end != digits.data() + digits.size())
+      return false;
+    out = read;
+    return true;
+  }
 
  private:
   void skip() {
-    while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
+    while (at_ < text_.size() && is_one_of(text_[at_], " \t\r\n")) ++at_;
+  }
+  static bool is_one_of(char c, const char* set) {
+    while (*set != '\0' && *set != c) ++set;
+    return *set != '\0';
   }
   bool take(char c) {
     skip();
@@ -77,10 +112,31 @@ class FlatJson {
   bool string(std::string& out) {
     if (!take('"')) return false;
     for (; at_ < text_.size() && text_[at_] != '"'; ++at_) {
-      if (text_[at_] == '\\' && ++at_ >= text_.size()) return false;
-      out += text_[at_];
+      if (text_[at_] != '\\') {
+        out += text_[at_];
+      } else if (++at_ >= text_.size() || !escaped(out)) {
+        return false;
+      }
     }
     return take('"');
+  }
+  // What stands behind a backslash. lilod sends ASCII; beyond it, a question mark.
+  bool escaped(std::string& out) {
+    const char c = text_[at_];
+    if (c == 'u') {
+      unsigned code = 0;
+      const char* const begin = text_.data() + at_ + 1;
+      if (text_.size() - at_ < 5 || std::from_chars(begin, begin + 4, code, 16).ptr != begin + 4)
+        return false;
+      at_ += 4;
+      out += code < 0x80 ? static_cast<char>(code) : '?';
+      return true;
+    }
+    const std::string names = "\"\\/bfnrt", values = "\"\\/\b\f\n\r\t";
+    const std::size_t k = names.find(c);
+    if (k == std::string::npos) return false;
+    out += values[k];
+    return true;
   }
   static std::string join(const std::string& path, const std::string& name) {
     return path.empty() ? name : path + '/' + name;
@@ -111,8 +167,7 @@ class FlatJson {
     skip();
     if (at_ < text_.size() && text_[at_] == '"') return string(scalars_[path]);
     const std::size_t start = at_;
-    while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) ||
-                                  text_[at_] == '.' || text_[at_] == '-' || text_[at_] == '+'))
+    while (at_ < text_.size() && is_one_of(text_[at_], "+-.0123456789abcdefghijklmnopqrstuvwxyzE"))
       ++at_;
     scalars_[path] = text_.substr(start, at_ - start);
     return at_ > start;
@@ -128,15 +183,14 @@ class FlatJson {
 /// Subscribes to a lilod, keeps the lease and survives its restarts. One thread.
 class Client {
  public:
-  /// Throws std::system_error when there is no socket to be had.
+  /// The major version of the protocol this client reads.
+  static constexpr unsigned kProtocolMajor = 2;
+
+  /// `host`: a name, or an IPv4 or IPv6 address. Throws std::system_error when there is no socket
+  /// to be had, std::runtime_error when nobody has that name.
   explicit Client(const std::string& host = "127.0.0.1", std::uint16_t port = 9871)
-      : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
-    sockaddr_in server{};
-    server.sin_family = AF_INET;
-    server.sin_port = htons(port);
-    if (socket_ < 0 || inet_pton(AF_INET, host.c_str(), &server.sin_addr) != 1 ||
-        connect(socket_, reinterpret_cast<const sockaddr*>(&server), sizeof(server)) != 0)
-      throw std::system_error(errno, std::generic_category(), "lilod at " + host);
+      : server_(host + ':' + std::to_string(port)) {
+    open(host, port);
   }
   ~Client() {
     request("\"unsubscribe\":{}");
@@ -145,70 +199,166 @@ class Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  /// Waits for the next pose; false when none came in time.
+  /// Waits for the next pose. False when none came in time, or at once when lilod speaks another
+  /// version: why() then says which.
   bool next(ClientPose& pose, std::chrono::milliseconds timeout = std::chrono::seconds(10)) {
     const auto deadline = Clock::now() + timeout;
-    while (Clock::now() < deadline) {
+    heard_.clear();
+    do {
       if (Clock::now() >= renew_at_) renew();
-      pollfd ready{socket_, POLLIN, 0};
-      if (poll(&ready, 1, 200) <= 0) continue;
+      if (!wait(deadline)) continue;
       std::array<char, 2048> bytes{};
       const ssize_t size = recv(socket_, bytes.data(), bytes.size(), 0);
-      if (size > 0 && take(std::string(bytes.data(), static_cast<std::size_t>(size)), pose))
+      if (size < 0) {
+        if (errno != EINTR && errno != EAGAIN) heard_ = system_error_text(errno);
+      } else if (take(std::string(bytes.data(), static_cast<std::size_t>(size)), pose)) {
+        why_.clear();
         return true;
-    }
+      }
+    } while (!other_version_ && Clock::now() < deadline);
+    why_ = other_version_
+               ? heard_
+               : "no pose from lilod at " + server_ + " within " + std::to_string(timeout.count()) +
+                     " ms: " + (heard_.empty() ? "no answer" : heard_);
     return false;
   }
+
+  /// Why next() returned false last, in one line for people.
+  const std::string& why() const { return why_; }
 
   /// The body of any request of the protocol: request("\"reset\":{}").
   void request(const std::string& body) {
     std::string text = '{' + body + (token_.empty() ? "" : ",\"token\":\"" + token_ + '"') + '}';
     // Until we have shown a token, lilod's answer is no longer than what we send.
     if (text.size() < kRequestBytes) text.resize(kRequestBytes, ' ');
-    // A refusal means that nobody listens yet; the lease is asked for again.
-    [[maybe_unused]] const ssize_t sent = send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
+    if (send(socket_, text.data(), text.size(), MSG_NOSIGNAL) < 0)
+      heard_ = system_error_text(errno);  // the lease is asked for again
   }
 
  private:
   static constexpr std::size_t kRequestBytes = 256;
   using Clock = std::chrono::steady_clock;
 
+  static std::string system_error_text(int error) {
+    return error == ECONNREFUSED ? "nobody listens there" : std::generic_category().message(error);
+  }
+
+  void open(const std::string& host, std::uint16_t port) {
+    addrinfo hints{};
+    hints.ai_socktype = SOCK_DGRAM;
+    addrinfo* found = nullptr;
+    const int failure = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
+    if (failure != 0)
+      throw std::runtime_error("lilod at " + server_ + ": " + gai_strerror(failure));
+    int error = 0;
+    for (const addrinfo* a = found; a != nullptr && socket_ < 0; a = a->ai_next) {
+      const int candidate = socket(a->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+      if (candidate >= 0 && connect(candidate, a->ai_addr, a->ai_addrlen) == 0) {
+        socket_ = candidate;
+      } else {
+        error = errno;
+        if (candidate >= 0) close(candidate);
+      }
+    }
+    freeaddrinfo(found);
+    if (socket_ < 0) throw std::system_error(error, std::generic_category(), "lilod at " + server_);
+  }
+
   void renew() {
     renew_at_ = Clock::now() + std::chrono::seconds(1);
     request("\"subscribe\":{\"ttl_s\":5}");
   }
 
+  // Until there is a datagram, the lease is to be renewed, or the time is over.
+  bool wait(Clock::time_point deadline) {
+    using std::chrono::ceil;
+    using std::chrono::milliseconds;
+    const auto left = ceil<milliseconds>(std::min(deadline, renew_at_) - Clock::now()).count();
+    pollfd ready{socket_, POLLIN, 0};
+    return poll(&ready, 1, static_cast<int>(std::max<long long>(left, 0))) > 0;
+  }
+
   template <std::size_t N>
-  static void read(const FlatJson& message, const std::string& path,
+  static bool read(const FlatJson& message, const std::string& path,
                    const std::array<const char*, N>& names, std::array<double, N>& out) {
-    for (std::size_t k = 0; k < N; ++k) out[k] = message.number(path + '/' + names[k]);
+    bool all = true;
+    for (std::size_t k = 0; k < N; ++k) {
+      out[k] = message.number(path + '/' + names[k]);
+      all = all && std::isfinite(out[k]);
+    }
+    return all;
   }
 
   bool take(const std::string& datagram, ClientPose& pose) {
     const FlatJson message(datagram);
+    if (!message.good()) {
+      heard_ = "what it sends is no JSON";
+      return false;
+    }
+    const std::string version = message.text("v");
+    other_version_ = version.substr(0, version.find('.')) != std::to_string(kProtocolMajor);
+    if (other_version_) {
+      heard_ = "lilod at " + server_ + " speaks protocol " + version + ", this client reads " +
+               std::to_string(kProtocolMajor) + ".x";
+      return false;
+    }
+    if (message.has("pose/status")) return take_pose(message, pose);
     if (message.has("hello/token")) {  // we are not on its computer: show that we got this
       token_ = message.text("hello/token");
       renew_at_ = {};
+    } else if (message.has("error/reason")) {
+      heard_ = "it refuses: " + message.text("error/reason");
+    } else if (message.has("health/status")) {
+      heard_ = "its health is " + message.text("health/status");
+    } else if (message.has("hello/ttl_s")) {
+      heard_ = "it has granted the subscription";
     }
-    if (!message.good() || !message.has("pose/status")) return false;
+    return false;
+  }
+
+  // A pose of which a number is missing is none.
+  bool take_pose(const FlatJson& message, ClientPose& pose) {
+    ClientPose read_pose;
+    std::int64_t sec = 0, nsec = 0;
     const std::array<const char*, 3> xyz{"x", "y", "z"};
     const std::array<const char*, 4> xyzw{"x", "y", "z", "w"};
-    pose.session = message.text("session");
-    pose.seq = std::strtoull(message.text("seq").c_str(), nullptr, 10);
-    pose.timestamp = message.number("timestamp");
-    pose.frame_id = message.text("pose/frame_id");
-    pose.child_frame_id = message.text("pose/child_frame_id");
-    pose.status = message.text("pose/status");
-    pose.latency_ms = message.number("pose/latency_ms");
-    read(message, "pose/position", xyz, pose.position);
-    read(message, "pose/orientation", xyzw, pose.orientation);
-    pose.has_twist = message.has("pose/twist/linear/x");
-    read(message, "pose/twist/linear", xyz, pose.linear);
-    read(message, "pose/twist/angular", xyz, pose.angular);
-    pose.has_covariance = message.has("pose/covariance/35");
-    for (std::size_t k = 0; k < 36; ++k)
+    const bool whole = message.integer("seq", read_pose.seq) &&
+                       message.integer("pose/stamp/sec", sec) &&
+                       message.integer("pose/stamp/nsec", nsec) &&
+                       read(message, "pose/position", xyz, read_pose.position) &&
+                       read(message, "pose/orientation", xyzw, read_pose.orientation);
+    if (!whole) {
+      heard_ = "it sent a pose with numbers missing";
+      return false;
+    }
+    read_pose.stamp_ns = sec * 1'000'000'000 + nsec;
+    read_pose.timestamp = message.number("timestamp");
+    read_pose.session = message.text("session");
+    read_pose.new_session = read_pose.session != session_;
+    session_ = read_pose.session;
+    read_pose.frame_id = message.text("pose/frame_id");
+    read_pose.child_frame_id = message.text("pose/child_frame_id");
+    read_pose.status = message.text("pose/status");
+    read_pose.latency_ms = message.number("pose/latency_ms");
+    read_pose.has_twist = read(message, "pose/twist/linear", xyz, read_pose.linear) &&
+                          read(message, "pose/twist/angular", xyz, read_pose.angular);
+    if (!read_pose.has_twist) read_pose.linear = read_pose.angular = {};
+    read_covariance(message, read_pose);
+    read_weak_directions(message, read_pose);
+    pose = std::move(read_pose);
+    return true;
+  }
+
+  static void read_covariance(const FlatJson& message, ClientPose& pose) {
+    pose.has_covariance = true;
+    for (std::size_t k = 0; k < 36; ++k) {
       pose.covariance[k] = message.number("pose/covariance/" + std::to_string(k));
-    pose.weak_directions.clear();
+      pose.has_covariance = pose.has_covariance && std::isfinite(pose.covariance[k]);
+    }
+    if (!pose.has_covariance) pose.covariance = {};
+  }
+
+  static void read_weak_directions(const FlatJson& message, ClientPose& pose) {
     for (std::string weak = "pose/weak_directions/0"; message.has(weak + "/from_scan");
          weak = "pose/weak_directions/" + std::to_string(pose.weak_directions.size())) {
       ClientWeakDirection& added = pose.weak_directions.emplace_back();
@@ -216,11 +366,13 @@ class Client {
       for (std::size_t k = 0; k < 6; ++k)
         added.direction[k] = message.number(weak + "/direction/" + std::to_string(k));
     }
-    return true;
   }
 
-  int socket_;
-  std::string token_;
+  std::string server_;
+  int socket_ = -1;
+  std::string token_, session_;
+  std::string heard_, why_;  // the last that was heard other than a pose; why next() gave up
+  bool other_version_ = false;
   Clock::time_point renew_at_{};
 };
 

@@ -6,10 +6,13 @@ from lilo_client import LiloClient
 
 host = sys.argv[1] if len(sys.argv) > 1 else "127.0.0.1"
 port = int(sys.argv[2]) if len(sys.argv) > 2 else 9871
-client = LiloClient(host, port)
-for count, pose in enumerate(client.poses(timeout_s=10), start=1):
-    p = pose["position"]
-    print(f'{pose["seq"]} {pose["status"]} {p["x"]:.3f} {p["y"]:.3f} {p["z"]:.3f}', flush=True)
-    if count == 10:
-        break
-client.close()
+count = 0
+with LiloClient(host, port) as client:
+    for pose in client.poses(timeout_s=10):
+        p = pose["position"]
+        print(f'{pose["seq"]} {pose["status"]} {p["x"]:.3f} {p["y"]:.3f} {p["z"]:.3f}', flush=True)
+        count += 1
+        if count == 10:
+            break
+    else:
+        sys.exit(client.why)

@@ -1,4 +1,4 @@
-# Three Debian packages by CPack, read with LILO_PACKAGE=ON; tools/package builds them.
+# Four Debian packages by CPack, read with LILO_PACKAGE=ON; tools/package builds them.
 
 # No mailbox yet: .invalid is nobody's (RFC 2606). Who publishes the packages sets DEBFULLNAME and
 # DEBEMAIL for tools/package.
@@ -16,14 +16,14 @@ install(DIRECTORY ${manuals}/lilo-tools/ DESTINATION ${CMAKE_INSTALL_MANDIR} COM
   OPTIONAL)
 install(FILES ${PROJECT_SOURCE_DIR}/config/vlp16.yaml ${PROJECT_SOURCE_DIR}/config/hdl64e.yaml
   DESTINATION /etc/lilod COMPONENT lilod)
-foreach(package lilod lilo-tools lilod-dev)
+foreach(package lilod lilo-tools lilod-dev python3-lilo)
   install(FILES debian/copyright ${CMAKE_BINARY_DIR}/changelog.gz DESTINATION ${doc}/${package}
     COMPONENT ${package})
 endforeach()
 install(FILES debian/lilod.lintian-overrides DESTINATION share/lintian/overrides RENAME lilod COMPONENT lilod)
 
 set(CPACK_GENERATOR DEB)
-set(CPACK_COMPONENTS_ALL lilod lilo-tools lilod-dev) # alone: nothing that has no component
+set(CPACK_COMPONENTS_ALL lilod lilo-tools lilod-dev python3-lilo) # alone: nothing that has no component
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -68,4 +68,14 @@ set(CPACK_DEBIAN_LILOD-DEV_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_LILOD-DEV_DESCRIPTION "client of the LiDAR odometry daemon lilod
  A C++ header that receives the poses lilod sends, and examples in C++, in
  Python and as a bridge to ROS 2.")
+set(CPACK_DEBIAN_LILOD-DEV_PACKAGE_SUGGESTS python3-lilo)
+
+set(CPACK_DEBIAN_PYTHON3-LILO_PACKAGE_NAME python3-lilo)
+set(CPACK_DEBIAN_PYTHON3-LILO_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON3-LILO_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON3-LILO_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_PYTHON3-LILO_PACKAGE_DEPENDS "python3 (>= 3.9)")
+set(CPACK_DEBIAN_PYTHON3-LILO_DESCRIPTION "Python client of the LiDAR odometry daemon lilod
+ The module lilo_client: poses and health from lilod as dictionaries, and
+ requests to it. It needs nothing but Python.")
 include(CPack)
