@@ -30,7 +30,7 @@ struct PublishConfig {
 struct SubscribeConfig {
   std::string bind_address = "127.0.0.1";
   std::uint16_t port = 9871;       ///< 0: nobody can ask
-  std::vector<std::string> allow;  ///< IPv4 addresses besides loopback
+  std::vector<std::string> allow;  ///< addresses and CIDR ranges besides loopback
   int max_clients = 16;
   double lease_s = 5.0;    ///< longest, and the one granted when none is asked for
   int points_clients = 4;  ///< subscribers that may have points; 0: none

@@ -59,6 +59,15 @@ std::vector<Key> udp_keys() {
            "sensors share a network."),
       text("udp.multicast_group", LILO_MEMBER(udp.multicast_group), kOptionalAddress, kRestart,
            "Group to join when the sensor sends multicast; empty: none."),
+      boolean(
+          "udp.share_ports", LILO_MEMBER(udp.share_ports), kRestart,
+          "Other lilods of this computer may listen to the same ports, each to a sensor of its "
+          "own. Needs sensor_address, and for sensors that do not broadcast the next two ports."),
+      integer("udp.sensor_data_port", LILO_MEMBER(udp.sensor_data_port), 1, 65535, "", kRestart,
+              "With share_ports: the port that the sensor sends its data packets from; 443 for "
+              "many an HDL-64E."),
+      integer("udp.sensor_position_port", LILO_MEMBER(udp.sensor_position_port), 1, 65535, "",
+              kRestart, "The same for its position packets."),
       integer("udp.receive_buffer_bytes", LILO_MEMBER(udp.receive_buffer_bytes), 65536, 268435456,
               "B", kRestart,
               "Socket buffer asked of the kernel, which grants no more than net.core.rmem_max. Two "
@@ -215,12 +224,14 @@ std::vector<Key> mount_keys() {
 
 std::vector<Key> subscribe_keys() {
   return {
-      text("subscribe.bind_address", LILO_MEMBER(subscribe.bind_address), kAddress, kRestart,
-           "Address to listen on for requests of clients. 127.0.0.1: this computer only."),
+      text("subscribe.bind_address", LILO_MEMBER(subscribe.bind_address), kAnyAddress, kRestart,
+           "Address to listen on for requests of clients. 127.0.0.1: this computer only; 0.0.0.0: "
+           "all of IPv4; \"::\": all of IPv4 and IPv6."),
       integer("subscribe.port", LILO_MEMBER(subscribe.port), 0, 65535, "", kRestart,
               "Port to listen on for requests of clients; 0: nobody can ask."),
-      list("subscribe.allow", LILO_MEMBER(subscribe.allow), kAddress, kLive,
-           "Other computers that may ask. They have to echo a token first, so that nobody can have "
+      list("subscribe.allow", LILO_MEMBER(subscribe.allow), kAddressRange, kLive,
+           "Other computers that may ask, as addresses or ranges: 10.0.0.7, 192.168.1.0/24, "
+           "fd00::/8. They have to echo a token first, so that nobody can have "
            "poses sent to a third one."),
       integer("subscribe.max_clients", LILO_MEMBER(subscribe.max_clients), 1, 256, "", kRestart,
               "Subscribers at one time."),

@@ -69,7 +69,7 @@ bool reaches(const std::string& sink, const std::string& bound_to, int port) {
   const std::size_t colon = sink.rfind(':');
   const std::string name = sink.substr(0, colon);
   const std::string host = name == "localhost" ? "127.0.0.1" : name;
-  const bool any = bound_to == "0.0.0.0" && host.starts_with("127.");
+  const bool any = (bound_to == "0.0.0.0" || bound_to == "::") && host.starts_with("127.");
   return sink.substr(colon + 1) == std::to_string(port) && (any || host == bound_to);
 }
 
@@ -110,6 +110,9 @@ std::vector<Contradiction> contradictions(const Config& c) {
           fmt::format("expected another port than udp.data_port, found {}", c.udp.position_port));
   require(has_profile(c.odometry.profile), {"odometry.profile"},
           "expected default, as this build has no profile paper, found paper");
+  require(!c.udp.share_ports || !c.udp.sensor_address.empty(),
+          {"udp.share_ports", "udp.sensor_address"},
+          "expected udp.sensor_address too: whose packets are this lilod's, found none");
   check_map(c, found);
   check_sinks(c, found);
   return found;

@@ -21,6 +21,23 @@ bool is_address(std::string_view text) {
   return inet_pton(AF_INET, std::string(text).c_str(), &parsed) == 1;
 }
 
+bool is_any_address(std::string_view text) {
+  in6_addr parsed{};
+  return is_address(text) || inet_pton(AF_INET6, std::string(text).c_str(), &parsed) == 1;
+}
+
+bool is_address_range(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  const std::string_view address = text.substr(0, slash);
+  if (!is_any_address(address)) return false;
+  if (slash == std::string_view::npos) return true;
+  const std::string_view digits = text.substr(slash + 1);
+  int bits = -1;
+  const auto [end, error] = std::from_chars(digits.begin(), digits.end(), bits);
+  return error == std::errc{} && end == digits.end() && bits >= 0 &&
+         bits <= (is_address(address) ? 32 : 128);
+}
+
 bool is_address_or_empty(std::string_view text) { return text.empty() || is_address(text); }
 
 bool is_endpoint(std::string_view text) {

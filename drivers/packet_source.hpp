@@ -70,6 +70,10 @@ struct UdpConfig {
   std::uint16_t position_port = 8308;  ///< 0: do not listen
   std::string sensor_address;          ///< only packets from here; empty: from anywhere
   std::string multicast_group;         ///< joined when set
+  /// Other programs may listen to the same ports, each to its own sensor, unicast and broadcast.
+  /// Needs sensor_address, and for unicast the ports it sends from.
+  bool share_ports = false;
+  std::uint16_t sensor_data_port = 2368, sensor_position_port = 8308;
   int receive_buffer_bytes = 4 << 20;  ///< asked of the kernel, which may grant less
 };
 

@@ -34,21 +34,10 @@ std::int64_t host_now_ns() {
 
 }  // namespace
 
-UdpSocket::UdpSocket(asio::io_context& context, const UdpConfig& config, std::uint16_t port)
+UdpSocket::UdpSocket(asio::io_context& context, const UdpConfig& config, std::uint16_t port,
+                     std::uint16_t sensor_port)
     : socket_(context) {
-  const auto address = address_of(config.bind_address, "bind address");
-  const std::string where = config.bind_address + ":" + std::to_string(port);
-  boost::system::error_code error;
-  socket_.open(udp::v4(), error);
-  check(error, "UDP socket cannot be opened");
-  if (!config.multicast_group.empty()) {
-    // Several programs may listen to one group; of unicast, only one can have the packets.
-    socket_.set_option(asio::socket_base::reuse_address(true), error);
-    check(error, where + ": address cannot be shared");
-  }
-  socket_.bind({address, port}, error);
-  check(error, where + ": cannot listen there");
-  port_ = socket_.local_endpoint(error).port();
+  bind(config, port, sensor_port);
   configure(config);
   for (std::size_t i = 0; i < kSlots; ++i) {
     Slot& slot = slots_[i];
@@ -61,6 +50,29 @@ UdpSocket::UdpSocket(asio::io_context& context, const UdpConfig& config, std::ui
                            .msg_controllen = slot.control.size(),
                            .msg_flags = 0};
   }
+}
+
+void UdpSocket::bind(const UdpConfig& config, std::uint16_t port, std::uint16_t sensor_port) {
+  const auto address = address_of(config.bind_address, "bind address");
+  const std::string where = config.bind_address + ":" + std::to_string(port);
+  boost::system::error_code error;
+  socket_.open(udp::v4(), error);
+  check(error, "UDP socket cannot be opened");
+  if (!config.multicast_group.empty() || config.share_ports) {
+    // Of sockets bound alike, each has all multicasts and broadcasts, but one alone has the
+    // unicast: that which is connected to its sender, else the last one.
+    socket_.set_option(asio::socket_base::reuse_address(true), error);
+    check(error, where + ": address cannot be shared");
+  }
+  socket_.bind({address, port}, error);
+  const bool taken = error == asio::error::address_in_use;
+  check(error, where + ": cannot listen there" +
+                   (taken ? " (another program does; two lilods: udp.share_ports)" : ""));
+  port_ = socket_.local_endpoint(error).port();
+  if (sensor_port == 0) return;
+  const auto sensor = address_of(config.sensor_address, "sensor address");
+  socket_.connect({sensor, sensor_port}, error);
+  check(error, where + ": cannot be kept for the sensor at " + config.sensor_address);
 }
 
 void UdpSocket::configure(const UdpConfig& config) {

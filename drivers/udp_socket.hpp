@@ -18,8 +18,10 @@ namespace lilo {
 /// its count of what it had to drop. Boost.Asio opens and configures; recvmmsg reads.
 class UdpSocket {
  public:
-  /// Throws DriverError naming what cannot be had.
-  UdpSocket(boost::asio::io_context& context, const UdpConfig& config, std::uint16_t port);
+  /// `sensor_port` not 0: connected to that port of config.sensor_address. Throws DriverError
+  /// naming what cannot be had.
+  UdpSocket(boost::asio::io_context& context, const UdpConfig& config, std::uint16_t port,
+            std::uint16_t sensor_port = 0);
 
   /// Takes what is waiting, without waiting. False when there was nothing, or an error.
   bool fill();
@@ -47,6 +49,7 @@ class UdpSocket {
     iovec vector;
   };
 
+  void bind(const UdpConfig& config, std::uint16_t port, std::uint16_t sensor_port);
   void configure(const UdpConfig& config);
   void read_control(msghdr& header, PacketView& packet);
 
