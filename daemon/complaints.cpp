@@ -46,36 +46,27 @@ void add_flow(const Health& h, Complaints& out) {
   if (h.tracking == TrackingStatus::degraded) out.push_back(Complaint::degraded);
 }
 
-struct Recent {
-  Fault fault;
-  Complaint complaint;
-};
-constexpr std::array<Recent, kFaultCount> kRecent{{
-    {Fault::foreign_packets, Complaint::second_sensor},
-    {Fault::packets_lost, Complaint::packets_lost},
-    {Fault::kernel_dropped, Complaint::kernel_dropped},
-    {Fault::malformed_packets, Complaint::malformed_packets},
-    {Fault::receive_errors, Complaint::receive_errors},
-    {Fault::sensor_restarts, Complaint::sensor_restarted},
-    {Fault::scans_dropped, Complaint::scans_dropped},
-    {Fault::map_refused, Complaint::map_full},
-    {Fault::poses_not_sent, Complaint::poses_not_sent},
-    {Fault::send_errors, Complaint::send_errors},
-    {Fault::clock_steps, Complaint::clock_stepped},
-}};
+// In the order of Fault.
+constexpr std::array<Complaint, kFaultCount> kOfFaults{
+    Complaint::packets_lost,  Complaint::kernel_dropped, Complaint::malformed_packets,
+    Complaint::second_sensor, Complaint::receive_errors, Complaint::sensor_restarted,
+    Complaint::scans_dropped, Complaint::map_full,       Complaint::poses_not_sent,
+    Complaint::send_errors,   Complaint::clock_stepped};
 
 }  // namespace
 
 Complaints complaints(const Health& h) {
   Complaints out;
   add_flow(h, out);
-  for (const Recent& recent : kRecent)
-    if (h.recent[recent.fault] > 0) out.push_back(recent.complaint);
+  for (std::size_t k = 0; k < kFaultCount; ++k)
+    if (h.recent.counts[k] > 0) out.push_back(kOfFaults[k]);
   if (!h.realtime.refusals.empty()) out.push_back(Complaint::realtime_refused);
   if (h.config_error) out.push_back(Complaint::config_bad);
   if (h.metrics_error) out.push_back(Complaint::metrics_not_written);
   return out;
 }
+
+Complaint complaint_of(Fault fault) { return kOfFaults[static_cast<std::size_t>(fault)]; }
 
 std::string_view words(Complaint complaint) { return name_of(complaint).words; }
 std::string_view slug(Complaint complaint) { return name_of(complaint).slug; }

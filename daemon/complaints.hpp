@@ -41,6 +41,9 @@ using Complaints = boost::container::static_vector<Complaint, kComplaintCount>;
 /// Empty when all is well.
 Complaints complaints(const Health& health);
 
+/// What is said of it while it goes on.
+Complaint complaint_of(Fault fault);
+
 /// For people: "packets lost".
 std::string_view words(Complaint complaint);
 /// For programs: "packets_lost".

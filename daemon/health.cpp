@@ -13,11 +13,15 @@ namespace {
 
 /// How much of what may go a datagram has.
 struct Room {
-  bool stages;
+  bool stages, sensor;
   std::size_t complaints;
 };
-constexpr std::array<Room, 6> kRooms{
-    {{true, kComplaintCount}, {false, kComplaintCount}, {false, 8}, {false, 4}, {false, 2}, {}}};
+constexpr std::array<Room, 6> kRooms{{{true, true, kComplaintCount},
+                                      {false, true, kComplaintCount},
+                                      {false, true, 8},
+                                      {false, true, 4},
+                                      {false, false, 4},
+                                      {false, false, 0}}};
 
 void write_quantiles(JsonWriter& out, std::string_view name, const Quantiles& q) {
   out.begin_object(name);
@@ -86,7 +90,7 @@ void write_complaints(JsonWriter& out, const Health& h, std::size_t at_most) {
   out.end_array();
 }
 
-void write_state(JsonWriter& out, const Health& h, Room room) {
+void write_state(JsonWriter& out, const Health& h, const Room& room) {
   out.text("status", status_word(h));
   write_complaints(out, h, room.complaints);
   out.text("instance", h.instance);
@@ -95,10 +99,11 @@ void write_state(JsonWriter& out, const Health& h, Room room) {
   if (h.pose_age_s >= 0.0) out.number("pose_age_s", h.pose_age_s, 1);
   out.text("clock", to_string(h.clock));
   out.number("sensor_silent_s", h.sensor_silent_s, 1);
-  write_sensor(out, h.sensor);
+  if (room.sensor) write_sensor(out, h.sensor);
 }
 
-std::string_view write(const std::string& session, const Health& h, Room room, JsonWriter& out) {
+std::string_view write(const std::string& session, const Health& h, const Room& room,
+                       JsonWriter& out) {
   out = JsonWriter();
   out.text("v", kProtocolVersion);
   out.seconds("timestamp", h.stamp_ns);
@@ -115,6 +120,7 @@ std::string_view write(const std::string& session, const Health& h, Room room, J
   out.unsigned_integer("sensor_restarts", h.driver.sensor_restarts);
   out.unsigned_integer("clock_steps", h.clock_steps);
   out.unsigned_integer("clients", h.clients);
+  out.unsigned_integer("clients_refused", h.clients_refused);
   write_quantiles(out, "latency_ms", h.latency_ms);
   write_quantiles(out, "processing_ms", h.processing_ms);
   write_realtime(out, h);

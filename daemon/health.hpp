@@ -17,7 +17,7 @@ namespace lilo {
 enum class Flow : std::uint8_t {
   all,         ///< poses are of now
   no_packets,  ///< nothing came for a second
-  no_scans,    ///< packets come, but no revolution ended for a second
+  no_scans,    ///< packets come, but no revolution ended for 1.5 s
   no_poses,    ///< scans come, but the worker has finished none for two seconds
 };
 
@@ -63,9 +63,12 @@ struct Health {
   std::uint64_t map_refused = 0;  ///< Estimate::map_refused_count
   std::uint64_t poses_sent = 0, poses_not_sent = 0, send_errors = 0;
   std::uint64_t clock_steps = 0;  ///< the computer's UTC was set while it ran
+  double clock_step_s = 0.0;      ///< the last of them
   std::size_t ring_slots = 0, ring_high_water = 0, clients = 0;
-  double rate_hz = 0.0;  ///< poses in the last second
-  FaultCounts recent;    ///< in the last ten seconds
+  std::uint64_t clients_refused = 0;  ///< subscriptions beyond subscribe.max_clients
+  double rate_hz = 0.0;               ///< poses in the last second
+  FaultCounts totals;                 ///< of the counts above, those that are faults
+  FaultCounts recent;                 ///< in the last ten seconds
 
   Quantiles latency_ms, processing_ms;  ///< of the last minute
   std::array<Quantiles, kStageCount> stages_ms;

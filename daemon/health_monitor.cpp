@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kWarmAfterScans = 10;
 // A revolution takes 0.2 s at the slowest (300 rpm).
-constexpr double kSilentAfterS = 1.0, kNoScansAfterS = 1.0, kNoPosesAfterS = 2.0;
+constexpr double kSilentAfterS = 1.0, kNoScansAfterS = 1.5, kNoPosesAfterS = 2.0;
 constexpr std::int64_t kClockStepNs = 100'000'000;
 constexpr std::size_t kLongestInstance = 32;
 
@@ -102,7 +102,10 @@ void HealthMonitor::add(const PoseReport& report, double latency_ms) {
 // is a step.
 void HealthMonitor::note_clock_step(std::int64_t now_ns) {
   const std::int64_t offset_ns = realtime_ns() - now_ns;
-  if (std::abs(offset_ns - utc_offset_ns_) > kClockStepNs) ++clock_steps_;
+  if (std::abs(offset_ns - utc_offset_ns_) > kClockStepNs) {
+    ++clock_steps_;
+    clock_step_s_ = static_cast<double>(offset_ns - utc_offset_ns_) * 1e-9;
+  }
   utc_offset_ns_ = offset_ns;
 }
 
@@ -136,7 +139,9 @@ void HealthMonitor::collect_counts(const PublisherCounts& published, Health& h) 
   h.poses_not_sent = published.poses_not_sent + counters.reports_dropped;
   h.send_errors = published.send_errors;
   h.clock_steps = clock_steps_;
+  h.clock_step_s = clock_step_s_;
   h.clients = published.clients;
+  h.clients_refused = published.clients_refused;
   h.ring_slots = engine_.ring_slots();
   h.ring_high_water = counters.ring_high_water;
 }
@@ -164,7 +169,8 @@ void HealthMonitor::collect(const PublisherCounts& published, Health& h) {
   collect_timing(h);
   const auto new_poses = static_cast<double>(published.poses_sent - poses_at_last_look_);
   h.rate_hz = elapsed_s > 0.0 ? new_poses / elapsed_s : 0.0;
-  h.recent = recent_.see(fault_totals(h), now_ns);
+  h.totals = fault_totals(h);
+  h.recent = recent_.see(h.totals, now_ns);
   h.config_error = config_error_;
   h.metrics_error = std::exchange(metrics_error_, false);
   poses_at_last_look_ = published.poses_sent;

@@ -13,6 +13,7 @@ namespace lilo {
 struct PublisherCounts {
   std::uint64_t poses_sent = 0, poses_not_sent = 0, send_errors = 0;
   std::size_t clients = 0;
+  std::uint64_t clients_refused = 0;
 };
 
 /// How this daemon is called among those of one computer: the configuration file's name without its
@@ -56,6 +57,7 @@ class HealthMonitor {
   std::int64_t last_look_ns_;
   std::int64_t utc_offset_ns_;  // of the computer's UTC from its monotonic clock
   std::uint64_t clock_steps_ = 0;
+  double clock_step_s_ = 0.0;
   bool config_error_ = false, metrics_error_ = false;
 };
 

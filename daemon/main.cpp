@@ -1,5 +1,6 @@
 #include "config/config.hpp"
 #include "config/print_config.hpp"
+#include "daemon/health_monitor.hpp"
 #include "daemon/log.hpp"
 #include "daemon/service.hpp"
 
@@ -37,7 +38,7 @@ int run(const Options& options) {
   if (options.print_config) std::cout << print_config(config);
   if (options.check_config) std::cout << options.config_path << ": ok\n";
   if (options.print_config || options.check_config) return kSuccess;
-  start_log(config.log.level);
+  start_log(config.log.level, instance_name(options.config_path));
   Service(config, options.config_path).run();
   return kSuccess;
 }

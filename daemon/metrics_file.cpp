@@ -1,5 +1,6 @@
 #include "daemon/metrics_file.hpp"
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
@@ -14,18 +15,50 @@ std::string metrics_path(const std::string& configured) {
   return folder == nullptr ? "" : std::string(folder) + "/lilo.prom";
 }
 
-bool replace_file(const std::string& path, std::string_view text) {
-  if (path.empty()) return false;
-  const std::string draft = path + ".new";
-  const int fd = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd < 0) return false;
-  // The unit's umask is 0077, but who collects metrics is another user.
-  const bool readable = fchmod(fd, 0644) == 0;
-  const bool whole = ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+namespace {
+
+std::error_code last_error() { return {errno, std::generic_category()}; }
+
+// The draft by O_NONBLOCK and not by waiting for somebody to read a pipe.
+int open_draft(const std::string& draft, std::error_code& error) {
+  const int fd = open(draft.c_str(),
+                      O_WRONLY | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | O_NOCTTY, 0644);
+  if (fd < 0) {
+    error = last_error();
+    return fd;
+  }
+  struct stat status {};
+  if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode) && ftruncate(fd, 0) == 0) return fd;
+  error = S_ISREG(status.st_mode) ? last_error() : std::make_error_code(std::errc::not_supported);
   close(fd);
-  if (readable && whole && std::rename(draft.c_str(), path.c_str()) == 0) return true;
-  std::remove(draft.c_str());
-  return false;
+  return -1;
+}
+
+std::error_code write_all(int fd, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(fd, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return last_error();
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::error_code replace_file(const std::string& path, std::string_view text) {
+  if (path.empty()) return std::make_error_code(std::errc::no_such_file_or_directory);
+  const std::string draft = path + ".new";
+  std::error_code error;
+  const int fd = open_draft(draft, error);
+  if (fd < 0) return error;
+  // The unit's umask is 0077, but who collects metrics is another user.
+  if (fchmod(fd, 0644) != 0) error = last_error();
+  if (!error) error = write_all(fd, text);
+  if (close(fd) != 0 && !error) error = last_error();
+  if (!error && std::rename(draft.c_str(), path.c_str()) != 0) error = last_error();
+  if (error) std::remove(draft.c_str());
+  return error;
 }
 
 }  // namespace lilo

@@ -1,6 +1,5 @@
 #include "daemon/metrics_writer.hpp"
 
-#include "daemon/metrics_file.hpp"
 #include "daemon/realtime.hpp"
 
 #include <pthread.h>
@@ -14,16 +13,16 @@ MetricsWriter::~MetricsWriter() {
   thread_.join();
 }
 
-bool MetricsWriter::write(const std::string& path, std::string_view text) {
-  if (path.empty() || writing_.load(std::memory_order_acquire)) return true;
-  const bool written = written_;
+std::error_code MetricsWriter::write(const std::string& path, std::string_view text) {
+  if (path.empty() || writing_.load(std::memory_order_acquire)) return {};
+  const std::error_code error = error_;
   if (!thread_.joinable()) text_.reserve(2 * text.size());  // its numbers grow longer
   path_ = path;
   text_ = text;
   writing_.store(true, std::memory_order_release);
   given_.signal();
   if (!thread_.joinable()) thread_ = std::thread(&MetricsWriter::run, this);
-  return written;
+  return error;
 }
 
 void MetricsWriter::run() {
@@ -33,7 +32,7 @@ void MetricsWriter::run() {
     given_.wait();
     last = stop_;  // asked first: what was given before the end is written
     if (!writing_.load(std::memory_order_acquire)) continue;
-    written_ = replace_file(path_, text_);
+    error_ = replace_(path_, text_);
     writing_.store(false, std::memory_order_release);
   }
 }

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "daemon/metrics_file.hpp"
 #include "daemon/wakeup.hpp"
 
 #include <atomic>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <thread>
 
 namespace lilo {
@@ -13,18 +15,21 @@ namespace lilo {
 /// disk delays no pose. One thread calls; it never waits, and once warm it does not allocate.
 class MetricsWriter {
  public:
-  /// Throws std::system_error when the system has no file descriptor left.
-  MetricsWriter() = default;
+  using Replace = std::error_code (*)(const std::string& path, std::string_view text);
+
+  /// Throws std::system_error when the system has no file descriptor left. `replace`: for tests,
+  /// what writes a file.
+  explicit MetricsWriter(Replace replace = replace_file) : replace_(replace) {}
   /// Waits until what it was given is written.
   ~MetricsWriter();
   MetricsWriter(const MetricsWriter&) = delete;
   MetricsWriter& operator=(const MetricsWriter&) = delete;
 
   /// An empty path: there is no file. While the text before is still being written, this one is
-  /// left out. False when the last one could not be written. The first call with a file starts the
-  /// thread, so that it comes after the process has its memory locked and its stacks limited, and
-  /// throws std::system_error when there is none.
-  bool write(const std::string& path, std::string_view text);
+  /// left out. Why the last one could not be written, or nothing. The first call with a file starts
+  /// the thread, so that it comes after the process has its memory locked and its stacks limited,
+  /// and throws std::system_error when there is none.
+  std::error_code write(const std::string& path, std::string_view text);
 
  private:
   void run();
@@ -34,7 +39,8 @@ class MetricsWriter {
   /// Whose the three below are: the thread's while it is set, else the caller's.
   std::atomic<bool> writing_{false};
   std::string path_, text_;
-  bool written_ = true;
+  std::error_code error_;
+  Replace replace_;
   std::thread thread_;
 };
 

@@ -128,6 +128,7 @@ void write_scans(Metrics& m, const Health& h) {
   m.counter("lilo_send_errors_total", "Datagrams the socket refused.", h.send_errors);
   m.gauge("lilo_ring_high_water_scans", "Most scans that ever waited.", h.ring_high_water);
   m.gauge("lilo_clients", "Subscribers.", h.clients);
+  m.counter("lilo_clients_refused_total", "Subscriptions beyond the limit.", h.clients_refused);
   m.quantiles("lilo_latency_seconds", "Last packet of a revolution to its datagram, last minute.",
               h.latency_ms);
   m.quantiles("lilo_processing_seconds", "Odometry of one scan, last minute.", h.processing_ms);

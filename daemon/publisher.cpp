@@ -2,20 +2,24 @@
 
 #include "daemon/base_frame.hpp"
 #include "daemon/clock.hpp"
+#include "daemon/log.hpp"
 #include "daemon/map_file.hpp"
 #include "daemon/metrics_file.hpp"
 #include "daemon/points_message.hpp"
 #include "daemon/prometheus.hpp"
+
+#include <fmt/format.h>
 
 #include <utility>
 
 namespace lilo {
 
 Publisher::Publisher(boost::asio::io_context& io, const Config& config, Engine& engine,
-                     HealthMonitor& monitor)
+                     HealthMonitor& monitor, Story& story)
     : config_(config),
       engine_(engine),
       monitor_(monitor),
+      story_(story),
       message_{new_session(), config.publish.frame_id, config.publish.child_frame_id},
       T_base_sensor_(to_pose(config.publish.T_base_sensor)),
       mounted_(!is_identity(config.publish.T_base_sensor)),
@@ -71,6 +75,7 @@ void Publisher::send_pose(const PoseReport& report) {
     ++poses_sent_;
   }
   monitor_.add(report, static_cast<double>(now_ns - report.last_packet_ns) * 1e-6);
+  story_.note(report);
 }
 
 // After the poses, which are urgent. Of another session than the last pose they would be of no use.
@@ -114,11 +119,22 @@ void Publisher::follow_session(const PoseReport& report) {
   }
   resets_ = report.resets;
   restarts_ = report.estimate.restarts;
+  const std::string before = message_.session;
   renew_session(message_.session);
   record_.clear();
+  set_log_context(message_.session, to_string(report.estimate.status));
+  story_.session_replaced(before, message_.session, reset);
 }
 
-void Publisher::save(SaveKind kind, const SaveDone& done) {
+void Publisher::save(SaveKind kind, const SaveDone& answer) {
+  const SaveDone done = [answer](const SaveResult& result) {
+    if (result.error.empty()) {
+      log_event(Event::saved, fmt::format("{}: {} saved", result.file, result.count));
+    } else {
+      log_event(Event::not_saved, fmt::format("not saved: {}", result.error));
+    }
+    answer(result);
+  };
   if (state_directory(config_.state.directory).empty()) {
     done({.error = "no state directory: set state.directory, or run under systemd"});
   } else if (map_saved_ || saver_.busy()) {
@@ -165,7 +181,8 @@ PublisherCounts Publisher::counts() const {
   return {.poses_sent = poses_sent_,
           .poses_not_sent = poses_not_sent_,
           .send_errors = sinks_.send_errors() + server_.send_errors(),
-          .clients = server_.clients()};
+          .clients = server_.clients(),
+          .clients_refused = server_.clients_refused()};
 }
 
 std::string_view Publisher::write_health_now() {
@@ -177,7 +194,15 @@ void Publisher::tick() {
   monitor_.collect(counts(), health_);
   if (config_.health.publish) broadcast(write_health_now());
   write_prometheus(message_.session, health_, metrics_);
-  if (!metrics_writer_.write(metrics_path_, metrics_)) monitor_.metrics_failed();
+  note_metrics(metrics_writer_.write(metrics_path_, metrics_));
+}
+
+void Publisher::note_metrics(std::error_code error) {
+  if (error) monitor_.metrics_failed();
+  if (error && error != metrics_error_)
+    log_event(Event::not_saved,
+              fmt::format("not saved: cannot write {}: {}", metrics_path_, error.message()));
+  metrics_error_ = error;
 }
 
 }  // namespace lilo

@@ -9,6 +9,7 @@
 #include "daemon/saver.hpp"
 #include "daemon/server.hpp"
 #include "daemon/sinks.hpp"
+#include "daemon/story.hpp"
 
 #include <boost/asio/io_context.hpp>
 
@@ -25,7 +26,7 @@ class Publisher {
  public:
   /// Throws std::runtime_error when a socket cannot be had.
   Publisher(boost::asio::io_context& io, const Config& config, Engine& engine,
-            HealthMonitor& monitor);
+            HealthMonitor& monitor, Story& story);
 
   /// Sends all poses the worker has finished, saves the map it has copied.
   void take_reports();
@@ -47,6 +48,7 @@ class Publisher {
   void save_map(MapCopy map);
   void follow_session(const PoseReport& report);
   bool reset(const std::optional<Pose>& start_pose);
+  void note_metrics(std::error_code error);
   void broadcast(std::string_view datagram);
   std::string_view write_health_now();
   [[nodiscard]] PublisherCounts counts() const;
@@ -54,6 +56,7 @@ class Publisher {
   Config config_;
   Engine& engine_;
   HealthMonitor& monitor_;
+  Story& story_;
   PoseMessageContext message_;
   Pose T_base_sensor_;
   bool mounted_ = false;        // T_base_sensor is not the identity
@@ -68,6 +71,7 @@ class Publisher {
   Health health_;
   std::string metrics_path_, metrics_;
   MetricsWriter metrics_writer_;
+  std::error_code metrics_error_;  // the one that was told
   std::uint64_t poses_sent_ = 0, poses_not_sent_ = 0;
   Sinks sinks_;
   Server server_;

@@ -39,7 +39,19 @@ Receiver::Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sen
 }
 
 void Receiver::share_state() {
-  state_.store({builder_.counts(), source_->counts(), builder_.status()});
+  const SensorStatus status = builder_.status();
+  state_.store({builder_.counts(), source_->counts(), status});
+  share_calibration(status);
+}
+
+void Receiver::share_calibration(const SensorStatus& status) {
+  const Hdl64eCalibration* const table = builder_.calibration();
+  if (status.calibration != CalibrationOrigin::packets || table == nullptr ||
+      *table == last_calibration_)
+    return;
+  last_calibration_ = *table;
+  calibration_.store(last_calibration_);
+  calibrations_read_.store(calibrations_read_.load() + 1);
 }
 
 void Receiver::run() {

@@ -4,6 +4,7 @@
 #include "daemon/pipeline.hpp"
 #include "daemon/snapshot.hpp"
 #include "daemon/wakeup.hpp"
+#include "drivers/hdl64e_calibration.hpp"
 #include "drivers/packet_source.hpp"
 #include "drivers/scan_builder.hpp"
 #include "drivers/sensor_config.hpp"
@@ -36,6 +37,9 @@ class Receiver : private ScanSink {
 
   /// Any thread: as of the last scan, and while there are none of the last 512 packets or 100 ms.
   [[nodiscard]] const Snapshot<ReceiverState>& state() const { return state_; }
+  /// Any thread: tables read from the packets of an HDL-64E so far, and the last of them.
+  [[nodiscard]] std::uint64_t calibrations_read() const { return calibrations_read_.load(); }
+  [[nodiscard]] const Snapshot<Hdl64eCalibration>& calibration() const { return calibration_; }
   /// Any thread: monotonic time of the last packet that was read; 0: none yet.
   [[nodiscard]] std::int64_t last_packet_ns() const { return last_packet_ns_.load(); }
   /// Any thread: monotonic time at which the last scan was complete; 0: none yet.
@@ -46,6 +50,7 @@ class Receiver : private ScanSink {
   void inserted(std::size_t index) override { extractor_.inserted(index); }
   void follow_scan();
   void share_state();
+  void share_calibration(const SensorStatus& status);
 
   std::unique_ptr<PacketSource> source_;
   ScanRing& scans_;
@@ -58,6 +63,9 @@ class Receiver : private ScanSink {
   std::atomic<std::int64_t> last_packet_ns_{0};
   std::atomic<std::int64_t> last_scan_ns_{0};
   Snapshot<ReceiverState> state_;
+  Hdl64eCalibration last_calibration_;  // that was shared
+  std::atomic<std::uint64_t> calibrations_read_{0};
+  Snapshot<Hdl64eCalibration> calibration_;
   ScanBuilder builder_;
 };
 

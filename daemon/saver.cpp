@@ -26,8 +26,10 @@ void Saver::write(const std::string& file, std::size_t count, std::function<std:
                   SaveDone done) {
   thread_ = std::thread([this, file, count, make = std::move(make), done = std::move(done)] {
     use_normal_policy_in_this_thread();  // not the publisher's, which it would inherit
-    const bool written = replace_file(file, make());
-    SaveResult result{.error = written ? "" : "cannot write " + file, .file = file, .count = count};
+    const std::error_code error = replace_file(file, make());
+    SaveResult result{.error = error ? "cannot write " + file + ": " + error.message() : "",
+                      .file = file,
+                      .count = count};
     boost::asio::post(io_, [this, result, done] {
       thread_.join();
       done(result);

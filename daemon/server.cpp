@@ -4,7 +4,8 @@
 #include "daemon/pose_message.hpp"
 
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/ip/address_v4.hpp>
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/ip/v6_only.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,6 +22,15 @@ constexpr int kAnswersPerSecond = 200, kAnswersToUnprovenPerSecond = 50;
 constexpr const char* kSoftware = "lilod " LILO_VERSION;
 constexpr double kShortestLeaseS = 1.0;
 
+// Whom a token belongs to.
+Requester who(const ip::udp::endpoint& from) {
+  Requester out{.port = from.port()};
+  const ip::address address = from.address();
+  out.address = address.is_v6() ? address.to_v6().to_bytes()
+                                : ip::make_address_v6(ip::v4_mapped, address.to_v4()).to_bytes();
+  return out;
+}
+
 std::int64_t to_ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
 }  // namespace
@@ -29,23 +39,34 @@ Server::Server(boost::asio::io_context& io, const SubscribeConfig& config,
                const PublishConfig& publish, ServerActions actions)
     : socket_(io),
       config_(config),
+      allow_(config.allow),
       publish_(publish),
       actions_(std::move(actions)),
       clients_(static_cast<std::size_t>(config.max_clients),
                static_cast<std::size_t>(config.points_clients)),
       answers_left_(kAnswersPerSecond),
       answers_to_unproven_left_(kAnswersToUnprovenPerSecond) {
-  if (config.port == 0) return;
-  const Endpoint local(ip::make_address_v4(config.bind_address), config.port);
+  if (config.port != 0) listen();
+}
+
+// An IPv6 socket bound to "::" is for both families.
+void Server::listen() {
+  const Endpoint local(ip::make_address(config_.bind_address), config_.port);
   error_code error;
-  socket_.open(ip::udp::v4());
-  socket_.bind(local, error);
+  socket_.open(local.protocol(), error);
+  if (!error && local.address().is_v6()) socket_.set_option(ip::v6_only(false), error);
+  if (!error) socket_.bind(local, error);
   if (error) {
-    throw std::runtime_error(fmt::format("subscribe: cannot listen on {}:{}: {}",
-                                         config.bind_address, config.port, error.message()));
+    throw std::runtime_error(fmt::format("subscribe: cannot listen on {} port {}: {}",
+                                         config_.bind_address, config_.port, error.message()));
   }
   socket_.non_blocking(true);
   await_request();
+}
+
+void Server::configure(const SubscribeConfig& config) {
+  config_ = config;
+  allow_ = AllowList(config.allow);
 }
 
 void Server::await_request() {
@@ -58,37 +79,28 @@ void Server::await_request() {
 }
 
 bool Server::is_known(const Endpoint& from) const {
-  const ip::address address = from.address();
-  if (address.is_loopback()) return true;
-  return std::find(config_.allow.begin(), config_.allow.end(), address.to_string()) !=
-         config_.allow.end();
+  const ip::address address = unmapped(from.address());
+  return address.is_loopback() || allow_.contains(address);
 }
 
 // That the sender receives what goes to its address: a packet from the loopback network cannot come
 // from outside, and others have sent back a token.
 bool Server::is_proven(const ParsedRequest& parsed) const {
-  if (from_.address().is_loopback()) return true;
+  if (unmapped(from_.address()).is_loopback()) return true;
   if (!parsed.request) return false;
-  return tokens_.accept(parsed.request->token, from_.address().to_v4().to_uint(), from_.port(),
-                        monotonic_ns());
+  return tokens_.accept(parsed.request->token, who(from_), monotonic_ns());
 }
 
 void Server::handle(std::string_view datagram) {
-  if (!is_known(from_)) {
-    ++requests_refused_;
-    return;
-  }
+  if (!is_known(from_)) return;
   request_bytes_ = datagram.size();
   const ParsedRequest parsed = parse_request(datagram);
   if (!is_proven(parsed)) {
     answer_unproven(parsed.request ? write_token() : write_error(parsed.error));
   } else if (!parsed.request) {
-    ++requests_refused_;
     if (answers_left_ > 0) say_error(parsed.error);
   } else if (may_be_served(*parsed.request)) {
     serve(*parsed.request);
-  } else {
-    ++requests_refused_;
   }
 }
 
@@ -133,6 +145,7 @@ void Server::subscribe(const Request& request) {
   const ClientTable::Client* client =
       clients_.renew(from_, monotonic_ns() + to_ns(ttl_s), request.points);
   if (client == nullptr) {
+    ++clients_refused_;
     say_error("too many clients");
   } else if (answers_left_ > 0) {
     say_hello(ttl_s, client->has_points);
@@ -201,8 +214,7 @@ std::string_view Server::write_token() {
   json_.begin_object("hello");
   json_.text("software", kSoftware);
   json_.number("ttl_s", 0.0, 3);
-  json_.text("token",
-             tokens_.make(from_.address().to_v4().to_uint(), from_.port(), monotonic_ns()));
+  json_.text("token", tokens_.make(who(from_), monotonic_ns()));
   json_.end_object();
   return json_.finish();
 }
@@ -223,10 +235,7 @@ void Server::answer(std::string_view datagram, const Endpoint& to) {
 // Whoever forged the sender gains nothing: what reaches the third party is no longer than what was
 // spent on it.
 void Server::answer_unproven(std::string_view datagram) {
-  if (answers_to_unproven_left_ <= 0 || datagram.size() > request_bytes_) {
-    ++requests_refused_;
-    return;
-  }
+  if (answers_to_unproven_left_ <= 0 || datagram.size() > request_bytes_) return;
   --answers_to_unproven_left_;
   send_to(datagram, from_);
 }

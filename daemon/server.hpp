@@ -1,6 +1,7 @@
 #pragma once
 
 #include "config/config.hpp"
+#include "daemon/allow_list.hpp"
 #include "daemon/client_table.hpp"
 #include "daemon/json_writer.hpp"
 #include "daemon/request.hpp"
@@ -42,7 +43,7 @@ class Server {
          ServerActions actions);
 
   /// Leases and the allow-list may change while it runs.
-  void configure(const SubscribeConfig& config) { config_ = config; }
+  void configure(const SubscribeConfig& config);
   /// To all subscribers.
   void send(std::string_view datagram);
   /// To those that have subscribed to points.
@@ -52,12 +53,14 @@ class Server {
 
   [[nodiscard]] std::size_t clients() const { return clients_.clients().size(); }
   [[nodiscard]] bool has_points_clients() const { return clients_.points_clients() > 0; }
-  [[nodiscard]] std::uint64_t requests_refused() const { return requests_refused_; }
+  /// Subscriptions for which there was no room.
+  [[nodiscard]] std::uint64_t clients_refused() const { return clients_refused_; }
   [[nodiscard]] std::uint64_t send_errors() const { return send_errors_; }
 
  private:
   using Endpoint = boost::asio::ip::udp::endpoint;
 
+  void listen();
   void await_request();
   void handle(std::string_view datagram);
   void serve(const Request& request);
@@ -80,6 +83,7 @@ class Server {
 
   boost::asio::ip::udp::socket socket_;
   SubscribeConfig config_;
+  AllowList allow_;
   PublishConfig publish_;
   ServerActions actions_;
   ClientTable clients_;
@@ -89,7 +93,7 @@ class Server {
   JsonWriter json_;
   std::size_t request_bytes_ = 0;
   int answers_left_ = 0, answers_to_unproven_left_ = 0;  // this second
-  std::uint64_t requests_refused_ = 0, send_errors_ = 0;
+  std::uint64_t clients_refused_ = 0, send_errors_ = 0;
 };
 
 }  // namespace lilo

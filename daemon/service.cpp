@@ -6,14 +6,18 @@
 #include "daemon/log.hpp"
 #include "daemon/notify.hpp"
 #include "daemon/pose_message.hpp"
+#include "daemon/saver.hpp"
+#include "daemon/stop_deadline.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <iterator>
 #include <sstream>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -21,6 +25,8 @@ namespace lilo {
 namespace {
 
 using boost::system::error_code;
+
+constexpr unsigned kStopWithinS = 4;  // the unit's TimeoutStopSec= is 5 s
 
 void log_report(const RealtimeReport& report) {
   const auto log_thread = [](const char* name, const ThreadPolicy& p) {
@@ -30,9 +36,8 @@ void log_report(const RealtimeReport& report) {
   log_thread("receiver", report.receiver);
   log_thread("publisher", report.publisher);
   spdlog::info("locked memory: {} kB", report.locked_memory_kb);
-  for (const std::string& refusal : report.refusals) {
-    spdlog::warn("NOT real time as configured: {}", refusal);
-  }
+  for (const std::string& refusal : report.refusals)
+    log_event(Event::realtime_refused, fmt::format("NOT real time as configured: {}", refusal));
 }
 
 // In place of what `out` held, whose memory it keeps.
@@ -67,15 +72,19 @@ Service::Service(const Config& config, std::string config_path)
       watchdog_(io_),
       engine_(config, open_udp(config.udp)),
       monitor_(engine_, instance_name(config_path_)),
-      publisher_(io_, config, engine_, monitor_),
+      publisher_(io_, config, engine_, monitor_, story_),
+      calibration_keeper_(io_, engine_.receiver(), state_directory(config.state.directory)),
       report_ready_(io_, dup(engine_.report_ready().fd())) {}
 
 void Service::run() {
   const RealtimeReport report = engine_.start();
   log_report(report);
   monitor_.started(report);
-  spdlog::info("session {}: listening on {}:{}, {} sink(s)", publisher_.session(),
-               config_.udp.bind_address, config_.udp.data_port, config_.publish.sinks.size());
+  set_log_context(publisher_.session(), "initializing");
+  log_event(Event::started, fmt::format("session {}: listening on {}:{}, {} sink(s)",
+                                        publisher_.session(), config_.udp.bind_address,
+                                        config_.udp.data_port, config_.publish.sinks.size()));
+  check_state_directory();
   await_signal();
   await_reports();
   await_second();
@@ -85,11 +94,21 @@ void Service::run() {
   notify::ready("waiting for the sensor");
   io_.run();
   notify::stopping();
+  start_stop_deadline(kStopWithinS);
   engine_.stop();
   publisher_.take_reports();
   publisher_.tick();
-  spdlog::info("{} poses published, {} scans dropped", publisher_.last_health().poses_sent,
-               publisher_.last_health().scans_dropped);
+  const Health& h = publisher_.last_health();
+  log_event(Event::stopping, fmt::format("{} poses published, {} packets lost, {} scans dropped",
+                                         h.poses_sent, h.driver.packets_lost, h.scans_dropped));
+}
+
+// What cannot be kept there is a pity, not a reason to stand still.
+void Service::check_state_directory() {
+  const std::string directory = state_directory(config_.state.directory);
+  if (directory.empty() || access(directory.c_str(), R_OK | W_OK | X_OK) == 0) return;
+  log_event(Event::not_saved, fmt::format("nothing can be saved: state directory {}: {}", directory,
+                                          std::generic_category().message(errno)));
 }
 
 void Service::await_reports() {
@@ -125,7 +144,7 @@ void Service::reload() {
   } catch (const ConfigError& error) {
     monitor_.config_was_bad(true);
     std::istringstream lines(error.what());
-    for (std::string line; std::getline(lines, line);) spdlog::error("{}", line);
+    for (std::string line; std::getline(lines, line);) log_event(Event::config_refused, line);
     spdlog::error("the configuration in force stays");
   }
   notify::ready(status_);
@@ -146,7 +165,8 @@ void Service::apply(const Config& read) {
   }
   publisher_.configure(config_);
   set_log_level(config_.log.level);
-  spdlog::info("{} read again, {} key(s) differ", config_path_, differing.size());
+  log_event(Event::config_taken,
+            fmt::format("{} read again, {} key(s) differ", config_path_, differing.size()));
 }
 
 void Service::await_second() {
@@ -158,29 +178,19 @@ void Service::await_second() {
   });
 }
 
-// Health for the clients, the state in words for `systemctl status`, new problems for the log.
+// Health for the clients, the state in words for `systemctl status`, what changed for the journal.
 void Service::supervise() {
   publisher_.tick();
   const Health& h = publisher_.last_health();
+  set_log_context(publisher_.session(), status_word(h));
   in_words(h, new_status_);
   if (new_status_ != status_) {
     notify::status(new_status_);
     spdlog::debug("{}", new_status_);
   }
-  if (h.flow != Flow::no_packets && waits_for_calibration(h.sensor))
-    spdlog::info("{}", new_status_);
   std::swap(status_, new_status_);
-
-  const std::uint64_t problems = h.driver.packets_lost + h.driver.malformed_packets +
-                                 h.source.kernel_dropped + h.source.receive_errors + h.map_refused +
-                                 h.scans_dropped + h.poses_not_sent + h.send_errors;
-  if (problems == problems_logged_ || !problem_lines_.take(monotonic_ns())) return;
-  problems_logged_ = problems;
-  spdlog::warn(
-      "packets lost {} (by the kernel {}), malformed {}; receive errors {}; scans dropped {}; map "
-      "full for {} points; poses not sent {}; send errors {}",
-      h.driver.packets_lost, h.source.kernel_dropped, h.driver.malformed_packets,
-      h.source.receive_errors, h.scans_dropped, h.map_refused, h.poses_not_sent, h.send_errors);
+  story_.second(h);
+  calibration_keeper_.look();
 }
 
 void Service::await_watchdog(std::int64_t interval_us) {

@@ -1,10 +1,11 @@
 #pragma once
 
 #include "config/config.hpp"
+#include "daemon/calibration_keeper.hpp"
 #include "daemon/engine.hpp"
 #include "daemon/health_monitor.hpp"
-#include "daemon/line_budget.hpp"
 #include "daemon/publisher.hpp"
+#include "daemon/story.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
@@ -31,6 +32,7 @@ class Service {
   void await_second();
   void await_watchdog(std::int64_t interval_us);
   void supervise();
+  void check_state_directory();
   void reload();
   void apply(const Config& read);
   [[nodiscard]] bool worker_is_alive();
@@ -42,13 +44,13 @@ class Service {
   boost::asio::steady_timer second_, watchdog_;
   Engine engine_;
   HealthMonitor monitor_;
+  Story story_;
   Publisher publisher_;
+  CalibrationKeeper calibration_keeper_;
   boost::asio::posix::stream_descriptor report_ready_;
 
   std::string status_, new_status_;
   std::uint64_t processed_at_last_look_ = 0;
-  std::uint64_t problems_logged_ = 0;
-  LineBudget problem_lines_{1, 10'000'000'000};  // they are totals: one line says all since
 };
 
 }  // namespace lilo

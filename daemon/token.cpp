@@ -60,21 +60,19 @@ TokenMaker::TokenMaker() : key_{} {
   for (std::uint64_t& half : key_) half = std::uint64_t{device()} << 32U | device();
 }
 
-std::string TokenMaker::of_period(std::uint32_t ipv4, std::uint16_t port,
-                                  std::int64_t period) const {
-  const std::array<std::uint64_t, 2> words{std::uint64_t{ipv4} << 16U | port,
-                                           static_cast<std::uint64_t>(period)};
+std::string TokenMaker::of_period(const Requester& who, std::int64_t period) const {
+  std::array<std::uint64_t, 4> words{0, 0, who.port, static_cast<std::uint64_t>(period)};
+  std::memcpy(words.data(), who.address.data(), who.address.size());
   return fmt::format("{:016x}", siphash(key_, std::as_bytes(std::span(words))));
 }
 
-std::string TokenMaker::make(std::uint32_t ipv4, std::uint16_t port, std::int64_t now_ns) const {
-  return of_period(ipv4, port, now_ns / kPeriodNs);
+std::string TokenMaker::make(const Requester& who, std::int64_t now_ns) const {
+  return of_period(who, now_ns / kPeriodNs);
 }
 
-bool TokenMaker::accept(std::string_view token, std::uint32_t ipv4, std::uint16_t port,
-                        std::int64_t now_ns) const {
+bool TokenMaker::accept(std::string_view token, const Requester& who, std::int64_t now_ns) const {
   const std::int64_t period = now_ns / kPeriodNs;
-  return token == of_period(ipv4, port, period) || token == of_period(ipv4, port, period - 1);
+  return token == of_period(who, period) || token == of_period(who, period - 1);
 }
 
 }  // namespace lilo

@@ -118,7 +118,11 @@ Hdl64eCalibration load_calibration(const std::string& path) {
   return parse_calibration(path, read_text(path));
 }
 
-bool store_calibration(const std::string& path, const Hdl64eCalibration& calibration) {
+std::string stored_calibration_path(const std::string& state_directory) {
+  return state_directory + "/hdl64e_calibration.yaml";
+}
+
+std::string calibration_yaml(const Hdl64eCalibration& calibration) {
   YAML::Emitter out;
   out.SetDoublePrecision(12);
   out << YAML::BeginMap << YAML::Key << "lasers" << YAML::Value << YAML::BeginSeq;
@@ -134,10 +138,14 @@ bool store_calibration(const std::string& path, const Hdl64eCalibration& calibra
   out << YAML::EndSeq << YAML::Key << "num_lasers" << YAML::Value << calibration.lasers.size();
   out << YAML::Key << "distance_resolution" << YAML::Value << calibration.distance_step_m;
   out << YAML::EndMap;
+  return std::string(out.c_str()) + '\n';
+}
+
+bool store_calibration(const std::string& path, const Hdl64eCalibration& calibration) {
   const std::string temporary = path + ".new";
   {
     std::ofstream file(temporary, std::ios::trunc);
-    file << out.c_str() << '\n';
+    file << calibration_yaml(calibration);
     if (!file.flush()) return false;
   }
   std::error_code error;

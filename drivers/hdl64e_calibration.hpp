@@ -39,6 +39,13 @@ std::string implausible(const Hdl64eCalibration& calibration);
 /// radians). Throws DriverError naming file, laser and key.
 Hdl64eCalibration load_calibration(const std::string& path);
 
+/// The YAML form, as load_calibration() reads it.
+std::string calibration_yaml(const Hdl64eCalibration& calibration);
+
+/// Where a table read from packets is kept in SensorConfig::state_directory. Who writes it does so
+/// on another thread than the one that reads packets.
+std::string stored_calibration_path(const std::string& state_directory);
+
 /// Writes the YAML form, through a temporary file so that a reader never sees half of it. False
 /// when the folder cannot be written.
 bool store_calibration(const std::string& path, const Hdl64eCalibration& calibration);

@@ -3,6 +3,7 @@
 #include "drivers/packet_source.hpp"
 
 #include <filesystem>
+#include <system_error>
 
 namespace lilo {
 namespace {
@@ -13,13 +14,15 @@ constexpr std::int32_t kS3ShotNs = 57600;
 
 Hdl64eUnit::Hdl64eUnit(const SensorConfig& config, const AzimuthTable& azimuths)
     : decoder_(config, azimuths) {
-  if (!config.state_directory.empty())
-    stored_file_ = config.state_directory + "/hdl64e_calibration.yaml";
+  const std::string stored_file = config.state_directory.empty()
+                                      ? std::string()
+                                      : stored_calibration_path(config.state_directory);
+  std::error_code ignored;  // a folder that cannot be searched has none
   if (!config.calibration_file.empty()) {
     use_calibration(load_calibration(config.calibration_file), CalibrationOrigin::file);
-  } else if (!stored_file_.empty() && std::filesystem::is_regular_file(stored_file_)) {
+  } else if (std::filesystem::is_regular_file(stored_file, ignored)) {
     try {
-      use_calibration(load_calibration(stored_file_), CalibrationOrigin::stored);
+      use_calibration(load_calibration(stored_file), CalibrationOrigin::stored);
     } catch (const DriverError&) {
       origin_ = CalibrationOrigin::none;  // the packets will bring it again
     }
@@ -80,7 +83,6 @@ bool Hdl64eUnit::see_status(DataPacket packet, std::uint32_t lost, std::uint32_t
     return false;
   }
   use_calibration(status_.calibration(), CalibrationOrigin::packets);
-  if (!stored_file_.empty()) stored_ = store_calibration(stored_file_, *calibration_);
   return true;
 }
 
@@ -90,7 +92,6 @@ void Hdl64eUnit::describe(SensorStatus& status) const {
   status.calibration = origin_;
   status.calibration_progress = status_.progress();
   status.calibrations_refused = refused_;
-  status.calibration_stored = stored_;
   status.firmware = status_.firmware();
   status.temperature_c = status_.temperature_c();
 }

@@ -48,10 +48,8 @@ class Hdl64eUnit {
   PacketPeriod period_;
   bool was_dual_ = false;
   bool table_known_ = false;
-  std::string stored_file_;
   std::optional<Hdl64eCalibration> calibration_;
   CalibrationOrigin origin_ = CalibrationOrigin::none;
-  bool stored_ = false;
   std::uint64_t refused_ = 0;
 };
 

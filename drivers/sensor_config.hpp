@@ -15,7 +15,7 @@ enum class ReturnChoice : std::uint8_t { strongest, last, both };
 struct SensorConfig {
   SensorModel model = SensorModel::automatic;
   std::string calibration_file;  ///< HDL-64E: db.xml or the ROS YAML form; empty: from the packets
-  /// Where a table read from the packets is kept for the next start; empty: nowhere.
+  /// Where a table read from the packets in an earlier run was kept; empty: nowhere.
   std::string state_directory;
   double cut_azimuth_rad = 0.0;  ///< a scan starts here; clockwise from +x as the sensor counts
   double max_hole_rad = 5.0 * std::numbers::pi / 180.0;  ///< a larger hole makes a scan partial

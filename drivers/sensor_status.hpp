@@ -32,7 +32,6 @@ struct SensorStatus {
   CalibrationOrigin calibration = CalibrationOrigin::none;
   double calibration_progress = 0.0;       ///< part of the table read from packets, in [0, 1]
   std::uint64_t calibrations_refused = 0;  ///< tables whose checksum or values were wrong
-  bool calibration_stored = false;         ///< the table read was written to the state directory
   std::uint8_t firmware = 0;               ///< HDL-64E: 0x47 is 4.07
   std::uint8_t temperature_c = 0;          ///< HDL-64E
   std::uint32_t sensor_ipv4 = 0;           ///< host byte order

@@ -143,7 +143,8 @@ TEST(Allocation, PublisherHasNoneOnceWarm) {
   boost::asio::io_context io;
   Engine engine(config, std::make_unique<SteadySource>());
   HealthMonitor monitor(engine);
-  Publisher publisher(io, config, engine, monitor);
+  Story story;
+  Publisher publisher(io, config, engine, monitor, story);
   RealtimeReport realtime = engine.start();
   realtime.refusals.emplace_back("a refusal that is longer than a short string holds");
   monitor.started(realtime);

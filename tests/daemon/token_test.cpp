@@ -24,14 +24,17 @@ TEST(SipHash, ReferenceVectors) {
 TEST(TokenMaker, BelongsToOneAddressForAMinute) {
   const TokenMaker maker, other;
   constexpr std::int64_t kSecond = 1'000'000'000, now = 1'000 * kSecond;
-  const std::string token = maker.make(0x0a000001, 4711, now);
-  EXPECT_TRUE(maker.accept(token, 0x0a000001, 4711, now));
-  EXPECT_TRUE(maker.accept(token, 0x0a000001, 4711, now + 30 * kSecond));
-  EXPECT_FALSE(maker.accept(token, 0x0a000001, 4711, now + 60 * kSecond));
-  EXPECT_FALSE(maker.accept(token, 0x0a000001, 4712, now));
-  EXPECT_FALSE(maker.accept(token, 0x0a000002, 4711, now));
-  EXPECT_FALSE(maker.accept("", 0x0a000001, 4711, now));
-  EXPECT_FALSE(other.accept(token, 0x0a000001, 4711, now)) << "keys are random";
+  const Requester who{.address = {10, 0, 0, 1}, .port = 4711};
+  const Requester other_port{.address = {10, 0, 0, 1}, .port = 4712};
+  const Requester other_address{.address = {10, 0, 0, 2}, .port = 4711};
+  const std::string token = maker.make(who, now);
+  EXPECT_TRUE(maker.accept(token, who, now));
+  EXPECT_TRUE(maker.accept(token, who, now + 30 * kSecond));
+  EXPECT_FALSE(maker.accept(token, who, now + 60 * kSecond));
+  EXPECT_FALSE(maker.accept(token, other_port, now));
+  EXPECT_FALSE(maker.accept(token, other_address, now));
+  EXPECT_FALSE(maker.accept("", who, now));
+  EXPECT_FALSE(other.accept(token, who, now)) << "keys are random";
 }
 
 }  // namespace

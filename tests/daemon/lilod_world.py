@@ -1,0 +1,260 @@
+"""A lilod and all it talks to, for the scripts beside this file: sensors, systemd's journal, a sink."""
+import glob
+import json
+import math
+import os
+import re
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import tempfile
+import threading
+import time
+
+REPOSITORY = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+
+
+def binary(name):
+    """LILO_BIN_DIR, or the release build."""
+    return os.path.join(os.environ.get("LILO_BIN_DIR", REPOSITORY + "/build/release/bin"), name)
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def event_names():
+    """MESSAGE_ID -> name, of daemon/event.hpp."""
+    text = open(REPOSITORY + "/daemon/event.hpp").read()
+    names = re.findall(r"^  (\w+),$", text[text.index("enum class Event"):], re.M)
+    return dict(zip(re.findall(r"\"([0-9a-f]{32})\"", text), names))
+
+
+class Vlp16:
+    """A VLP-16 at 600 rpm, 1.8 m above the floor of a room of 24 x 14 m, at sensor speed, on a
+    thread of its own (63-9243, section 9)."""
+
+    PACKET_S = 24 * 55.296e-6
+    ELEVATIONS = [-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15]
+    _blocks = None
+
+    def __init__(self, port, address="127.0.0.1", source_port=0, to="127.0.0.1", product=0x22):
+        self.port, self.product, self.to = port, product, to
+        self.frozen_azimuth = self.frozen_stamp = self.hdl64e = False
+        self.loss = 0.0
+        self.sent = 0
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
+        self._socket.bind((address, source_port))
+        self._on = threading.Event()
+        self._end = False
+        self._debt = 0.0
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def on(self):
+        self._on.set()
+
+    def off(self):
+        self._on.clear()
+
+    def close(self):
+        self._end = True
+        self._on.set()
+        self._thread.join()
+        self._socket.close()
+
+    @classmethod
+    def _room(cls):
+        """The 32 returns of a block for each tenth of a degree."""
+        if cls._blocks is None:
+            cls._blocks = []
+            for tenth in range(3600):
+                azimuth = math.radians(tenth / 10)
+                wall = min(12 / max(abs(math.cos(azimuth)), 1e-9),
+                           7 / max(abs(math.sin(azimuth)), 1e-9))
+                returns = b""
+                for elevation in cls.ELEVATIONS:
+                    e = math.radians(elevation)
+                    reach = wall / math.cos(e)
+                    if e < 0:
+                        reach = min(reach, 1.8 / math.sin(-e))
+                    returns += struct.pack("<HB", int(reach * 500), 60)
+                cls._blocks.append(returns * 2)
+        return cls._blocks
+
+    def packet(self, number):
+        time_s = number * self.PACKET_S
+        blocks, out = self._room(), []
+        for block in range(12):
+            at = 0.0 if self.frozen_azimuth else time_s + block * 2 * 55.296e-6
+            azimuth = int(at * 10 % 1 * 36000)
+            flag = 0xddff if self.hdl64e and block % 2 else 0xeeff
+            out.append(struct.pack("<HH", flag, azimuth) + blocks[azimuth // 10])
+        stamp = 0 if self.frozen_stamp else int(time_s * 1e6) % 3600000000
+        return b"".join(out) + struct.pack("<IBB", stamp, 0x37, self.product)
+
+    def _run(self):
+        number, began = 0, None
+        while not self._end:
+            if not self._on.is_set():
+                began = None
+                self._on.wait()
+                continue
+            now = time.monotonic()
+            if began is None or now - began - number * self.PACKET_S > 0.5:
+                began, number = now - number * self.PACKET_S, number
+            while number * self.PACKET_S <= now - began:
+                self._debt += self.loss
+                if self._debt >= 1.0:
+                    self._debt -= 1.0
+                else:
+                    self._socket.sendto(self.packet(number), (self.to, self.port))
+                    self.sent += 1
+                number += 1
+            time.sleep(0.004)
+
+
+class Journal:
+    """journald's socket, for one daemon."""
+
+    def __init__(self, folder):
+        self.path = folder + "/journal"
+        self.entries = []
+        self._names = event_names()
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self._socket.bind(self.path)
+        self._socket.setblocking(False)
+
+    def read(self):
+        """The entries since the last call, as dicts with EVENT beside MESSAGE_ID."""
+        new = []
+        while True:
+            try:
+                data = self._socket.recv(65536)
+            except BlockingIOError:
+                break
+            entry = dict(line.split("=", 1) for line in data.decode().splitlines())
+            entry["EVENT"] = self._names.get(entry.get("MESSAGE_ID"), "")
+            new.append(entry)
+        self.entries += new
+        return new
+
+    def events(self):
+        self.read()
+        return [entry["EVENT"] for entry in self.entries if entry["EVENT"]]
+
+    def close(self):
+        self._socket.close()
+
+
+class Lilod:
+    """A lilod with a folder of its own. `yaml` may hold {data_port}, {position_port}, {sink},
+    {request_port}, {folder}; without it: a daemon on loopback."""
+
+    YAML = """sensor:
+  model: {model}
+udp:
+  bind_address: 127.0.0.1
+  data_port: {data_port}
+  position_port: {position_port}
+publish:
+  sinks: ["127.0.0.1:{sink}"]
+subscribe:
+  port: {request_port}
+health:
+  metrics_file: {folder}/lilo.prom
+"""
+
+    def __init__(self, yaml=None, name="lilod", more="", model="auto", environment=None, **ports):
+        self.folder = tempfile.mkdtemp(prefix="lilo_world_")
+        self.sink = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.sink.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20)
+        self.sink.bind(("127.0.0.1", 0))
+        self.sink.setblocking(False)
+        self.ports = {"data_port": free_port(), "position_port": free_port(),
+                      "request_port": free_port(), **ports}
+        fields = {**self.ports, "sink": self.sink.getsockname()[1], "folder": self.folder,
+                  "model": model}
+        self.config = f"{self.folder}/{name}.yaml"
+        self.metrics_file = f"{self.folder}/lilo.prom"
+        with open(self.config, "w") as file:
+            file.write((yaml or self.YAML).format(**fields) + more.format(**fields))
+        self.journal = Journal(self.folder)
+        self.health = None
+        self.poses = []
+        self._errors = open(self.folder + "/stderr", "w")
+        self.process = subprocess.Popen(
+            [binary("lilod"), "--config", self.config], stderr=self._errors,
+            env={**os.environ, "LILO_JOURNAL_SOCKET": self.journal.path, **(environment or {})})
+
+    def listen(self):
+        """Reads what it has sent; `health` is the last, `poses` all."""
+        while True:
+            try:
+                message = json.loads(self.sink.recv(4096))
+            except BlockingIOError:
+                return
+            if "health" in message:
+                self.health = {**message["health"], "session": message["session"]}
+            if "pose" in message:
+                self.poses.append(message)
+
+    def wait(self, good, seconds=15):
+        """Until a health is good(); whether one was."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.listen()
+            if self.health is not None and good(self.health):
+                return True
+            time.sleep(0.05)
+        return False
+
+    def metrics(self):
+        """Name with labels -> value."""
+        try:
+            lines = open(self.metrics_file).read().splitlines()
+        except FileNotFoundError:
+            return {}
+        return {line.rsplit(" ", 1)[0]: float(line.rsplit(" ", 1)[1])
+                for line in lines if not line.startswith("#")}
+
+    def ask(self, request, seconds=3):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
+            client.settimeout(seconds)
+            client.sendto(json.dumps(request).encode(), ("127.0.0.1", self.ports["request_port"]))
+            try:
+                return json.loads(client.recv(4096))
+            except socket.timeout:
+                return None
+
+    def stderr(self):
+        return open(self.folder + "/stderr").read()
+
+    def stop(self, seconds=10):
+        """SIGTERM; the exit code and how long it took."""
+        began = time.monotonic()
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        try:
+            code = self.process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            code = None
+        took = time.monotonic() - began
+        self.listen()
+        self.journal.read()
+        return code, took
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        self.sink.close()
+        self.journal.close()
+        self._errors.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
