@@ -2,6 +2,7 @@
 #include "tools/clients/lilo_client.hpp"
 
 #include <algorithm>
+#include <arpa/inet.h>
 #include <atomic>
 #include <csignal>
 #include <filesystem>
