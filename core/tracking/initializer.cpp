@@ -45,8 +45,8 @@ bool Initializer::must_begin_again(const ScanTiming& scan, std::size_t feature_c
 
 bool Initializer::add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
                       LocalOdometry& local) {
-  finest_level_ = scan.finest_level;
   Remembered& one = scans_[count_++];
+  one.finest_level = scan.finest_level;
   one.timing = scan.timing;
   one.feature_count = all.size();
   thin_out(all, most_for_map_, one.for_map);
@@ -107,7 +107,7 @@ Solution Initializer::try_start(const Start& start, LocalOdometry& local) {
   first.T_begin = moved({}, start.twist, -first.span_s);
   first.knots = Unknowns::Zero(Eigen::Index{kKnotSize} * (first.segments + 1));
   note_track(0, first.T_begin, {});
-  local.begin_map_of(scans_[0].for_map, first, finest_level_);
+  local.begin_map_of(scans_[0].for_map, first, scans_[0].finest_level);
   prior.twist = start.twist;
   // However often it is refined, what was believed at first stays believed.
   add_velocity_prior(start, prior);
@@ -161,7 +161,8 @@ void Initializer::replay(Start start, LocalOdometry& local) {
     }
     local.accept(scans_[k].timing, solution);
     note_track(k, solution.trajectory.at(0.0), solution.trajectory.end());
-    local.grow_map(scans_[k].timing, scans_[k].for_map, solution, MapUse::keyframe, finest_level_);
+    local.grow_map(scans_[k].timing, scans_[k].for_map, solution, MapUse::keyframe,
+                   scans_[k].finest_level);
   }
 }
 

@@ -56,6 +56,7 @@ class Initializer {
     ScanTiming timing;
     std::size_t feature_count = 0;  ///< before selection
     std::vector<Feature> for_map, selected;
+    std::size_t finest_level = LocalMaps::kUsual;  ///< of the map
   };
   /// A motion the sensor may have, and what is believed of its speed along the ground.
   struct Start {
@@ -80,8 +81,7 @@ class Initializer {
   std::array<MotionSearch::Track, MotionSearch::kMostScans> tracks_;  // the newest as predicted
   std::size_t count_ = 0;
   MotionSearch search_;
-  std::size_t finest_level_ = LocalMaps::kUsual;  // of the newest scan
-  bool is_unambiguous_ = false;                   // no other motion fits nearly as well
+  bool is_unambiguous_ = false;  // no other motion fits nearly as well
   bool is_stationary_ = false;
   Twist assumed_;  // by the second scan
 };

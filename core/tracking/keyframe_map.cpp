@@ -45,8 +45,8 @@ void KeyframeMap::clear() {
 void KeyframeMap::begin(const std::vector<Feature>& features, const Trajectory& trajectory,
                         std::size_t finest_level) {
   clear();
-  hold(features, trajectory, 0);
-  insert_held(finest_level);
+  hold(features, trajectory, 0, finest_level);
+  insert_held();
   keyframes_ = 1;
 }
 
@@ -58,12 +58,12 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
     if (continues && scan.use != MapUse::none) {
       held_.trajectory.knots.tail<kKnotSize>() += scan.solution.trajectory.knots.head<kKnotSize>();
     }
-    insert_held(scan.finest_level);
+    insert_held();
   }
   if (scan.use != MapUse::keyframe || !is_due(scan)) return false;
-  hold(scan.features, scan.solution.trajectory, scan.timing.end_ns);
+  hold(scan.features, scan.solution.trajectory, scan.timing.end_ns, scan.finest_level);
   // While there is little else, a scan late is too late.
-  if (keyframes_ < kYoung) insert_held(scan.finest_level);
+  if (keyframes_ < kYoung) insert_held();
   ++keyframes_;
   T_odom_keyframe_ = scan.T_odom_sensor;
   return true;
@@ -82,14 +82,15 @@ bool KeyframeMap::is_due(const AlignedScan& scan) const {
 }
 
 void KeyframeMap::hold(const std::vector<Feature>& features, const Trajectory& trajectory,
-                       std::int64_t end_ns) {
+                       std::int64_t end_ns, std::size_t finest_level) {
   thin_out(features, static_cast<std::size_t>(config_.map_features), held_.features);
   held_.trajectory = trajectory;
   held_.end_ns = end_ns;
+  held_.finest_level = finest_level;
   held_.is_waiting = true;
 }
 
-void KeyframeMap::insert_held(std::size_t finest_level) {
+void KeyframeMap::insert_held() {
   held_.is_waiting = false;
   sample(held_.trajectory, sampled_);
   points_.clear();
@@ -98,7 +99,7 @@ void KeyframeMap::insert_held(std::size_t finest_level) {
         {sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m}).cast<double>() + sampled_.origin_m(f.s),
          sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m}), f.kind});
   }
-  cells_.insert(points_, finest_level);
+  cells_.insert(points_, held_.finest_level);
   cells_.end_keyframe();
 }
 

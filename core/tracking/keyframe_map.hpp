@@ -60,12 +60,13 @@ class KeyframeMap {
     std::vector<Feature> features;
     Trajectory trajectory;
     std::int64_t end_ns = 0;
+    std::size_t finest_level = LocalMaps::kUsual;
     bool is_waiting = false;
   };
   [[nodiscard]] bool is_due(const AlignedScan& scan) const;
-  void hold(const std::vector<Feature>& features, const Trajectory& trajectory,
-            std::int64_t end_ns);
-  void insert_held(std::size_t finest_level);
+  void hold(const std::vector<Feature>& features, const Trajectory& trajectory, std::int64_t end_ns,
+            std::size_t finest_level);
+  void insert_held();
 
   DefaultConfig config_;
   LocalMaps cells_;

@@ -108,6 +108,24 @@ TEST_F(KeyframeMapTest, TheNextScanPutsTheEndOfAKeyframeRight) {
   EXPECT_GT(moved_m, mean_y_m(MapUse::end_only, false) + 0.1) << "firings are missing";
 }
 
+// From a room through a door: the keyframe was seen in the room, the next scan outside.
+TEST_F(KeyframeMapTest, AKeyframeEntersAtTheLevelOfItsOwnSurroundings) {
+  fill();
+  const Pose T{Eigen::Quaterniond::Identity(), {9.0, 0.0, 0.0}};
+  const auto take = [&](std::size_t finest_level, MapUse use) {
+    const test::ObservedScan scan(
+        test::yard(), [&](double) { return T; }, count_++);
+    map_.grow({scan.timing(), scan.features(), solution_at(T), T, use, finest_level});
+  };
+  const auto half_cells = [&] {
+    return map_.cells().at(LocalMaps::kNarrow, FeatureKind::structure).size();
+  };
+  ASSERT_EQ(half_cells(), 0);
+  take(LocalMaps::kNarrow, MapUse::keyframe);
+  take(LocalMaps::kUsual, MapUse::end_only);
+  EXPECT_GT(half_cells(), 0);
+}
+
 TEST_F(KeyframeMapTest, BeginsWithOneScanAtOnce) {
   fill();
   const test::ObservedScan scan(
