@@ -57,8 +57,8 @@ void FeatureImage::begin(const BeamTable& beams) {
   margin_ = static_cast<int>(std::ceil(kSpread_rad * columns_per_rad(columns_)));
   const auto size = static_cast<std::size_t>(beams.ring_count) * static_cast<std::size_t>(columns_);
   pixels_.resize(size);
-  steps_ = {};
-  steps_.length2_m2.fill(kNone_m2);
+  edges_ = {};
+  edges_.length2_m2.fill(kNone_m2);
   for (int ring = 0; ring < beams.ring_count; ++ring) {
     gap_rad_[static_cast<std::size_t>(ring)] = gap_rad(beams, ring);
   }
@@ -69,16 +69,16 @@ void FeatureImage::begin(const BeamTable& beams) {
   }
   first_column_ = -1;
   front_ = classified_ = 0;
-  disturbed_ = false;
+  invalidated_ = false;
 }
 
 void FeatureImage::add(std::span<const Return> returns) {
   project(returns);
-  if (!disturbed_) classify_until(front_ - margin_);
+  if (!invalidated_) classify_until(front_ - margin_);
 }
 
 std::vector<Feature>& FeatureImage::finish(const Scan& scan) {
-  if (disturbed_ || classified_ == 0) {
+  if (invalidated_ || classified_ == 0) {
     features_.clear();
     for (int column = 0; column < columns_; ++column) classify_column(column, features_);
   } else {
@@ -104,7 +104,7 @@ void FeatureImage::classify_until(int place) {
   }
 }
 
-void FeatureImage::gather(int column, Gathered& g) const {
+void FeatureImage::view_column(int column, ColumnView& g) const {
   const auto rows = static_cast<std::size_t>(beams_.ring_count);
   const auto pixels_of = [&](int c) { return pixels_.data() + static_cast<std::size_t>(c) * rows; };
   const auto take = [&g](const Pixel& p, std::size_t k) {
@@ -132,31 +132,31 @@ void FeatureImage::gather(int column, Gathered& g) const {
       }
     }
   }
-  set_flat(taken, g);
+  set_horizontal(taken, g);
 }
 
-void FeatureImage::set_flat(const Filled& taken, Gathered& g) const {
+void FeatureImage::set_horizontal(const Filled& taken, ColumnView& g) const {
   const auto rows = static_cast<std::size_t>(beams_.ring_count);
   for (std::size_t k = 0; k < rows; ++k) {
-    g.flat_m[k] = std::sqrt(g.x_m[k] * g.x_m[k] + g.y_m[k] * g.y_m[k]);
+    g.horizontal_m[k] = std::sqrt(g.x_m[k] * g.x_m[k] + g.y_m[k] * g.y_m[k]);
   }
   for (std::size_t first = 0; first < rows; first += 64) {
     const std::size_t beyond = first + 64 - std::min(first + 64, rows);  // no rings of this sensor
     std::uint64_t empty = ~taken[first / 64] << beyond >> beyond;
     for (; empty != 0; empty &= empty - 1) {
-      g.flat_m[first + static_cast<std::size_t>(std::countr_zero(empty))] = 0.0F;
+      g.horizontal_m[first + static_cast<std::size_t>(std::countr_zero(empty))] = 0.0F;
     }
   }
 }
 
 /// From each ring to the next. No branches: the compiler takes four rings at a time.
-void FeatureImage::step_up(const Gathered& g) {
-  float* const length2_m2 = steps_.length2_m2.data() + 2;
-  std::int32_t* const flat = steps_.flat.data() + 2;
-  std::int32_t* const steep = steps_.steep.data() + 2;
+void FeatureImage::find_edges(const ColumnView& g) {
+  float* const length2_m2 = edges_.length2_m2.data() + 2;
+  std::int32_t* const flat = edges_.flat.data() + 2;
+  std::int32_t* const steep = edges_.steep.data() + 2;
   const auto count = static_cast<std::size_t>(std::max(beams_.ring_count - 1, 0));
   for (std::size_t k = 0; k < count; ++k) {
-    const float from_m = g.flat_m[k], to_m = g.flat_m[k + 1];
+    const float from_m = g.horizontal_m[k], to_m = g.horizontal_m[k + 1];
     const float dd = to_m - from_m, dz = g.z_m[k + 1] - g.z_m[k];
     const bool is_steep = std::abs(dz) > kSteep * std::abs(dd);
     // Rings are range * gap apart across the ray, and farther on what the ray grazes: by the ratio
@@ -174,26 +174,26 @@ void FeatureImage::step_up(const Gathered& g) {
 }
 
 void FeatureImage::classify_column(int column, std::vector<Feature>& out) {
-  Gathered gathered;
-  gather(column, gathered);
-  step_up(gathered);
-  for (std::size_t word = 0; word < gathered.own.size(); ++word) {
-    for (std::uint64_t own = gathered.own[word]; own != 0; own &= own - 1) {
-      add_feature(gathered, word * 64 + static_cast<std::size_t>(std::countr_zero(own)), out);
+  ColumnView view;
+  view_column(column, view);
+  find_edges(view);
+  for (std::size_t word = 0; word < view.own.size(); ++word) {
+    for (std::uint64_t own = view.own[word]; own != 0; own &= own - 1) {
+      add_feature(view, word * 64 + static_cast<std::size_t>(std::countr_zero(own)), out);
     }
   }
 }
 
-void FeatureImage::add_feature(const Gathered& g, std::size_t ring,
+void FeatureImage::add_feature(const ColumnView& g, std::size_t ring,
                                std::vector<Feature>& out) const {
   const std::size_t below = ring + 1, above = ring + 2;  // steps
-  const bool flat = (steps_.flat[below] | steps_.flat[above]) != 0;
-  const bool steep = (steps_.steep[below] | steps_.steep[above]) != 0;
+  const bool flat = (edges_.flat[below] | edges_.flat[above]) != 0;
+  const bool steep = (edges_.steep[below] | edges_.steep[above]) != 0;
   if (flat && steep) return;                // a kerb or the foot of a wall: neither
   if (flat && g.z_m[ring] >= 0.0F) return;  // a roof or a canopy seen from below
   // From the ground to the foot of a wall goes no surface.
-  const bool foot_below = flat && steps_.steep[below - 1] != 0;
-  const bool foot_above = flat && steps_.steep[above + 1] != 0;
+  const bool foot_below = flat && edges_.steep[below - 1] != 0;
+  const bool foot_above = flat && edges_.steep[above + 1] != 0;
   Feature f{g.x_m[ring],
             g.y_m[ring],
             g.z_m[ring],
@@ -203,13 +203,13 @@ void FeatureImage::add_feature(const Gathered& g, std::size_t ring,
             0.0F,
             flat ? FeatureKind::ground : FeatureKind::structure,
             static_cast<std::uint8_t>(ring)};
-  set_reach(g, foot_below ? kNone_m2 : steps_.length2_m2[below],
-            foot_above ? kNone_m2 : steps_.length2_m2[above], f);
+  set_sample_gap(g, foot_below ? kNone_m2 : edges_.length2_m2[below],
+                 foot_above ? kNone_m2 : edges_.length2_m2[above], f);
   out.push_back(f);
 }
 
-void FeatureImage::set_reach(const Gathered& g, float to_lower2, float to_upper2,
-                             Feature& f) const {
+void FeatureImage::set_sample_gap(const ColumnView& g, float to_lower2, float to_upper2,
+                                  Feature& f) const {
   const std::size_t ring = f.ring;
   const bool up = to_upper2 < to_lower2;
   if ((up ? to_upper2 : to_lower2) < kFarApart_m * kFarApart_m) {
@@ -221,11 +221,11 @@ void FeatureImage::set_reach(const Gathered& g, float to_lower2, float to_upper2
   }
   // Across the ray. Without it what is thin and level, a bridge far ahead or a rail, holds the ring
   // that sees it at the height at which it was seen first, and with it the pitch.
-  const float flat_m = std::max(1e-3F, g.flat_m[ring]);
+  const float horizontal_m = std::max(1e-3F, g.horizontal_m[ring]);
   const float gap = gap_rad_[ring];
-  f.dx_m = -gap * f.z_m * f.x_m / flat_m;
-  f.dy_m = -gap * f.z_m * f.y_m / flat_m;
-  f.dz_m = gap * flat_m;
+  f.dx_m = -gap * f.z_m * f.x_m / horizontal_m;
+  f.dy_m = -gap * f.z_m * f.y_m / horizontal_m;
+  f.dz_m = gap * horizontal_m;
 }
 
 }  // namespace lilo::core

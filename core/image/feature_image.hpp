@@ -58,32 +58,32 @@ class FeatureImage {
   /// where this one got no return of a ring, that of the column before or after stands in if it is
   /// below the horizon. Of the ground, that is; leaves and rails above hardly ever go on from
   /// column to column.
-  struct Gathered {
+  struct ColumnView {
     std::array<float, kMaxRings> x_m, y_m, z_m;
-    std::array<float, kMaxRings> flat_m;  ///< from the sensor's axis; 0: empty
+    std::array<float, kMaxRings> horizontal_m;  ///< from the sensor's axis; 0: empty
     std::array<std::int32_t, kMaxRings> t_ns;
     Filled own;
   };
   /// From each ring's pixel to the next's, if both are on one surface; else neither flat nor steep.
   /// Index 2 is the way from ring 0 to ring 1, and there is room around.
-  struct Steps {
+  struct RingEdges {
     std::array<float, kMaxRings + 3> length2_m2;
     std::array<std::int32_t, kMaxRings + 3> flat, steep;  ///< 1 or 0
   };
-  struct Canvas;  // in feature_image_project.cpp
+  struct Projector;  // in feature_image_project.cpp
   static float columns_per_rad(int columns);
   void project(std::span<const Return> returns);
-  void project_crowded(const Canvas& canvas, std::span<const Return> returns);
+  void project_crowded(const Projector& projector, std::span<const Return> returns);
   void note(int column);
   [[nodiscard]] int place_of(int column) const;
   void classify_until(int place);
   void classify_column(int column, std::vector<Feature>& out);
-  void gather(int column, Gathered& g) const;
+  void view_column(int column, ColumnView& g) const;
   /// `taken`: the rings that have a pixel.
-  void set_flat(const Filled& taken, Gathered& g) const;
-  void step_up(const Gathered& g);
-  void add_feature(const Gathered& g, std::size_t ring, std::vector<Feature>& out) const;
-  void set_reach(const Gathered& g, float to_lower2, float to_upper2, Feature& f) const;
+  void set_horizontal(const Filled& taken, ColumnView& g) const;
+  void find_edges(const ColumnView& g);
+  void add_feature(const ColumnView& g, std::size_t ring, std::vector<Feature>& out) const;
+  void set_sample_gap(const ColumnView& g, float to_lower2, float to_upper2, Feature& f) const;
 
   int most_columns_;
   int columns_ = 0;  // for these beams
@@ -94,15 +94,15 @@ class FeatureImage {
   std::vector<Filled> filled_;  // of every column; apart, because most returns only ask this
   /// Between a ring and the next, which of the highest is the one below.
   std::array<float, kMaxRings> gap_rad_{};
-  Steps steps_;  // of the column in hand
+  RingEdges edges_;  // of the column in hand
   std::vector<Feature> features_;
   std::vector<Feature> last_features_;  // of columns to the right of straight behind
 
   // A column's place counts from `first_column_`, in the order in which the sensor passes them.
-  int first_column_ = -1;   // -1: no return yet
-  int front_ = 0;           // the farthest place before the seam that a return fell into
-  int classified_ = 0;      // places before this one are done
-  bool disturbed_ = false;  // and one of them got another return
+  int first_column_ = -1;     // -1: no return yet
+  int front_ = 0;             // the farthest place before the seam that a return fell into
+  int classified_ = 0;        // places before this one are done
+  bool invalidated_ = false;  // and one of them got another return
 };
 
 }  // namespace lilo::core

@@ -7,7 +7,7 @@
 namespace lilo::core {
 
 /// A copy of what tells where a return goes, in registers whatever is written to the image.
-struct FeatureImage::Canvas {
+struct FeatureImage::Projector {
   Pixel* pixels;
   Filled* filled;
   std::uint32_t rows, columns;
@@ -40,26 +40,26 @@ struct FeatureImage::Canvas {
 };
 
 void FeatureImage::project(std::span<const Return> returns) {
-  const Canvas canvas{pixels_.data(),
-                      filled_.data(),
-                      static_cast<std::uint32_t>(beams_.ring_count),
-                      static_cast<std::uint32_t>(columns_),
-                      columns_per_rad(columns_),
-                      nearest2_,
-                      farthest2_};
+  const Projector projector{pixels_.data(),
+                            filled_.data(),
+                            static_cast<std::uint32_t>(beams_.ring_count),
+                            static_cast<std::uint32_t>(columns_),
+                            columns_per_rad(columns_),
+                            nearest2_,
+                            farthest2_};
   if (columns_ < most_columns_) {
-    project_crowded(canvas, returns);
+    project_crowded(projector, returns);
     return;
   }
   for (const Return& r : returns) {
-    const std::uint32_t column = canvas.column_of(r);
-    if (canvas.put(r, column)) note(static_cast<int>(column));
+    const std::uint32_t column = projector.column_of(r);
+    if (projector.put(r, column)) note(static_cast<int>(column));
   }
 }
 
 /// Where there are more returns than pixels, a processor cannot foretell which ones are taken. So
-/// those that are free are gathered first, without a branch.
-void FeatureImage::project_crowded(const Canvas& canvas, std::span<const Return> returns) {
+/// those that are free are view first, without a branch.
+void FeatureImage::project_crowded(const Projector& projector, std::span<const Return> returns) {
   constexpr std::size_t kAtATime = 48;  // fewer than a firing has: hardly two are for one pixel
   std::array<std::uint32_t, kAtATime> at, columns;
   while (!returns.empty()) {
@@ -67,13 +67,13 @@ void FeatureImage::project_crowded(const Canvas& canvas, std::span<const Return>
     returns = returns.subspan(some.size());
     std::size_t count = 0;
     for (std::size_t k = 0; k < some.size(); ++k) {
-      const std::uint32_t column = canvas.column_of(some[k]);
+      const std::uint32_t column = projector.column_of(some[k]);
       at[count] = static_cast<std::uint32_t>(k);
       columns[count] = column;
-      count += canvas.is_free(some[k].ring, column);
+      count += projector.is_free(some[k].ring, column);
     }
     for (std::size_t k = 0; k < count; ++k) {
-      if (canvas.put(some[at[k]], columns[k])) note(static_cast<int>(columns[k]));
+      if (projector.put(some[at[k]], columns[k])) note(static_cast<int>(columns[k]));
     }
   }
 }
@@ -82,7 +82,7 @@ void FeatureImage::project_crowded(const Canvas& canvas, std::span<const Return>
 void FeatureImage::note(int column) {
   if (first_column_ < 0) first_column_ = (column + margin_) % columns_;
   const int place = place_of(column);
-  if (place <= classified_ && classified_ > 0) disturbed_ = true;  // or looked at from beside
+  if (place <= classified_ && classified_ > 0) invalidated_ = true;  // or looked at from beside
   if (place < columns_ - 2 * margin_ && place > front_) front_ = place;
 }
 

@@ -93,7 +93,7 @@ void thin_out(const std::vector<Feature>& all, std::size_t most, std::vector<Fea
   std::size_t n = 0;
   for (const Feature& f : all) {
     if (n == most) break;
-    // Which ones are due is not to be foretold either.
+    // A branch on it would be predicted wrongly half of the time.
     std::uint64_t& parts = owed[f.ring];
     parts += most;
     const bool due = parts >= whole;

@@ -14,7 +14,7 @@ constexpr float kFewPoints_m = 0.1F;  // 1 sigma of what one point says of the s
 // A direction informs if its spread (1 sigma) stays under this part of the window's width; an even
 // filling has 0.29.
 constexpr float kThin = 0.065F;
-constexpr std::uint32_t kYoung = 4;  // keyframes
+constexpr std::uint32_t kYoungCell = 4;  // keyframes
 constexpr std::size_t kSweepShare = 64;
 
 }  // namespace
@@ -30,7 +30,7 @@ CellMap::CellMap(const CellMapConfig& config)
   free_.reserve(capacity);
 }
 
-std::int32_t CellMap::make(const Place& place) {
+std::int32_t CellMap::make(const CellKey& key) {
   if (used_ == config_.capacity) {
     ++refused_;
     return kNone;
@@ -45,27 +45,27 @@ std::int32_t CellMap::make(const Place& place) {
     cells_[static_cast<std::size_t>(at)] = Cell{};
     sums_[static_cast<std::size_t>(at)] = Moments{};
   }
-  table_.insert(place.home, CellTable::tag_of(place.index), at);
+  table_.insert(key.bucket, CellTable::tag_of(key.index), at);
   ++used_;
-  cells_[static_cast<std::size_t>(at)].index = place.index;
+  cells_[static_cast<std::size_t>(at)].index = key.index;
   cells_[static_cast<std::size_t>(at)].born = keyframe_;
   return at;
 }
 
 std::size_t CellMap::neighbours_of(const CellIndex& i, Neighbours& found) const {
-  std::array<std::size_t, Neighbours{}.size()> homes;
+  std::array<std::size_t, Neighbours{}.size()> buckets;
   std::array<std::uint32_t, Neighbours{}.size()> tags;
   std::size_t n = 0;
   for (std::int32_t x = -1; x <= 1; ++x) {
     for (std::int32_t y = -1; y <= 1; ++y) {
       const CellIndex lowest{i.x + x, i.y + y, i.z - 1};
-      std::size_t home = table_.home_of(lowest);
+      std::size_t bucket = table_.bucket_of(lowest);
       std::uint32_t tag = CellTable::tag_of(lowest);
       for (int level = 0; level < 3; ++level, ++n) {
-        homes[n] = home;
+        buckets[n] = bucket;
         tags[n] = tag;
-        table_.prefetch(home);
-        home = table_.home_above(home);
+        table_.prefetch(bucket);
+        bucket = table_.bucket_above(bucket);
         tag = CellTable::tag_above(tag);
       }
     }
@@ -76,7 +76,7 @@ std::size_t CellMap::neighbours_of(const CellIndex& i, Neighbours& found) const 
   for (const float x_m : across_m) {
     for (const float y_m : across_m) {
       for (const float z_m : across_m) {
-        const std::int32_t at = table_.find(homes[n], tags[n]);
+        const std::int32_t at = table_.find(buckets[n], tags[n]);
         ++n;
         if (at == kNone) continue;
         prefetch_sums(at);
@@ -114,7 +114,7 @@ Moments CellMap::moments_around(const CellIndex& i) const {
 
 void CellMap::fit(Cell& cell) const {
   const std::uint32_t age = keyframe_ - cell.born;
-  cell.refit_at = keyframe_ + (age < kYoung ? 1 : std::max(6U, age / 2));
+  cell.refit_at = keyframe_ + (age < kYoungCell ? 1 : std::max(6U, age / 2));
   cell.information.setZero();
   const Moments sums = moments_around(cell.index);
   const float count = count_of(sums);
@@ -138,7 +138,7 @@ void CellMap::fit(Cell& cell) const {
 }
 
 void CellMap::clear() {
-  for (const Cell& cell : cells_) table_.clear_from(table_.home_of(cell.index));
+  for (const Cell& cell : cells_) table_.clear_from(table_.bucket_of(cell.index));
   cells_.clear();
   sums_.clear();
   free_.clear();
@@ -149,7 +149,7 @@ void CellMap::remove(std::size_t slot) {
   free_.push_back(table_.slots()[slot].at);
   --used_;
   table_.remove(slot, [this](std::int32_t at) {
-    return table_.home_of(cells_[static_cast<std::size_t>(at)].index);
+    return table_.bucket_of(cells_[static_cast<std::size_t>(at)].index);
   });
 }
 

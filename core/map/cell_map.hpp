@@ -2,6 +2,7 @@
 
 #include "core/map/cell_table.hpp"
 #include "core/map/moments.hpp"
+#include "core/odometry_config.hpp"
 
 #include <Eigen/Core>
 
@@ -19,13 +20,15 @@ struct Match {
 };
 
 struct CellMapConfig {
-  float cell_m = 0.5F;
-  float noise_m = 0.02F;  ///< 1 sigma of a return across a surface
+  float cell_m = static_cast<float>(DefaultConfig{}.cell_m);
+  /// 1 sigma of a return across a surface.
+  float noise_m = static_cast<float>(DefaultConfig{}.noise_m);
   /// Ground: informs of its height and slope only, and not at all where no more than a strip of it
   /// was seen. Where it ends, before a wall or at one ring, moves with the sensor and would hold it
   /// where it is; and of a strip, the foot of the wall would make a slope.
   bool level = false;
-  int capacity = 100000;  ///< cells; beyond it new ones are refused and counted
+  /// Cells; beyond it new ones are refused and counted.
+  int capacity = DefaultConfig{}.map_cells;
   /// Points a cell remembers; older ones fade. What is seen of a thing moves as the sensor passes
   /// it: held against its oldest views, a scan is dragged back, and every path comes out too short.
   float memory = 30.0F;
@@ -39,18 +42,18 @@ struct CellMapConfig {
 class CellMap {
  public:
   static constexpr std::int32_t kNone = CellTable::kNone;
-  /// A cell's place in the table, whether it is there or not.
-  struct Place {
+  /// A cell's key in the table, whether it is there or not.
+  struct CellKey {
     CellIndex index{};
-    std::int32_t last = kNone;  ///< the cell that it was before, if a point has hardly moved
-    std::size_t home = 0;       ///< in the table; only where there is no last
+    std::int32_t cached = kNone;  ///< the cell that it was before, if a point has hardly moved
+    std::size_t bucket = 0;       ///< in the table; only where nothing is cached
   };
   /// Vector to the next sampled point on the same surface. The surface between the two was not seen
   /// and counts as spread; without it a single ring on the ground looks like a plane through its
   /// own rays, blind to pitch ("cone lock").
-  struct Reach {
-    explicit Reach(const Eigen::Vector3f& reach_m)
-        : square_m2(reach_m.squaredNorm()), outer_m2(outer(reach_m)) {}
+  struct SampleGap {
+    explicit SampleGap(const Eigen::Vector3f& gap_m)
+        : square_m2(gap_m.squaredNorm()), outer_m2(outer(gap_m)) {}
     float square_m2;
     Symmetric outer_m2;
   };
@@ -58,35 +61,35 @@ class CellMap {
   explicit CellMap(const CellMapConfig& config);
 
   /// Adds a point of the odometry frame.
-  void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& reach_m) {
-    const Place place = place_of(point_m);
-    add(open(place), place, point_m, Reach(reach_m));
+  void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& gap_m) {
+    const CellKey key = key_of(point_m);
+    add(find_or_insert(key), key, point_m, SampleGap(gap_m));
   }
 
   /// The distribution around a point. Fits are cached: a young cell is fitted again after every
   /// end_keyframe(), an older one at every sixth at most, and the older the less often.
-  Match find(const Eigen::Vector3d& point_m) { return match(cell_at(place_of(point_m)), point_m); }
+  Match find(const Eigen::Vector3d& point_m) { return match(cell_at(key_of(point_m)), point_m); }
 
   /// find() and insert() in steps. Each but the last asks the memory for what the next one reads;
   /// who takes them for many points in turn does not wait for it.
-  /// `last`: what cell_at() answered for it before, the map being the same.
-  [[nodiscard]] Place place_of(const Eigen::Vector3d& point_m, std::int32_t last = kNone) const {
-    Place place{index_of(point_m), last};
-    if (last != kNone) {
-      __builtin_prefetch(&cells_[static_cast<std::size_t>(last)]);
+  /// `cached`: what cell_at() answered for it before, the map being the same.
+  [[nodiscard]] CellKey key_of(const Eigen::Vector3d& point_m, std::int32_t cached = kNone) const {
+    CellKey key{index_of(point_m), cached};
+    if (cached != kNone) {
+      __builtin_prefetch(&cells_[static_cast<std::size_t>(cached)]);
     } else {
-      place.home = table_.home_of(place.index);
-      table_.prefetch(place.home);
+      key.bucket = table_.bucket_of(key.index);
+      table_.prefetch(key.bucket);
     }
-    return place;
+    return key;
   }
-  [[nodiscard]] std::int32_t cell_at(const Place& place) const {
-    std::size_t home = place.home;
-    if (place.last != kNone) {
-      if (cells_[static_cast<std::size_t>(place.last)].index == place.index) return place.last;
-      home = table_.home_of(place.index);
+  [[nodiscard]] std::int32_t cell_at(const CellKey& key) const {
+    std::size_t bucket = key.bucket;
+    if (key.cached != kNone) {
+      if (cells_[static_cast<std::size_t>(key.cached)].index == key.index) return key.cached;
+      bucket = table_.bucket_of(key.index);
     }
-    const std::int32_t at = table_.find(home, CellTable::tag_of(place.index));
+    const std::int32_t at = table_.find(bucket, CellTable::tag_of(key.index));
     if (at != kNone) __builtin_prefetch(&cells_[static_cast<std::size_t>(at)]);
     return at;
   }
@@ -98,23 +101,23 @@ class CellMap {
     return {(point_m - center_of(cell.index)).cast<float>() - cell.mean_m, &cell.information};
   }
   /// The cell there, made if missing; kNone where there is no room.
-  std::int32_t open(const Place& place) {
-    const std::int32_t at = table_.find(place.home, CellTable::tag_of(place.index));
-    if (at == kNone) return make(place);
+  std::int32_t find_or_insert(const CellKey& key) {
+    const std::int32_t at = table_.find(key.bucket, CellTable::tag_of(key.index));
+    if (at == kNone) return make(key);
     prefetch_sums(at);
     return at;
   }
-  void add(std::int32_t at, const Place& place, const Eigen::Vector3d& point_m,
-           const Reach& reach) {
+  void add(std::int32_t at, const CellKey& key, const Eigen::Vector3d& point_m,
+           const SampleGap& gap) {
     if (at == kNone) return;
     Moments& sums = sums_[static_cast<std::size_t>(at)];
-    // Seen through a window of three cells, a longer reach is just "all of it".
+    // Seen through a window of three cells, a longer gap is just "all of it".
     const float window_m2 = 9.0F * config_.cell_m * config_.cell_m;
-    const float spread = reach.square_m2 > window_m2 ? window_m2 / (12.0F * reach.square_m2)
-                                                     : 1.0F / 12.0F;  // if even
-    const Eigen::Vector3f p = (point_m - center_of(place.index)).cast<float>();
+    const float spread =
+        gap.square_m2 > window_m2 ? window_m2 / (12.0F * gap.square_m2) : 1.0F / 12.0F;  // if even
+    const Eigen::Vector3f p = (point_m - center_of(key.index)).cast<float>();
     const float kept = count_of(sums) >= config_.memory ? kept_ : 1.0F;
-    add_to(sums, kept, moments_of(p, spread, reach.outer_m2));
+    add_to(sums, kept, moments_of(p, spread, gap.outer_m2));
   }
 
   void end_keyframe() { ++keyframe_; }
@@ -177,7 +180,7 @@ class CellMap {
     __builtin_prefetch(&sums.front());
     __builtin_prefetch(&sums.back());
   }
-  std::int32_t make(const Place& place);
+  std::int32_t make(const CellKey& key);
   /// Of the 27 cells around and including one, those that are there; how many.
   std::size_t neighbours_of(const CellIndex& i, Neighbours& found) const;
   [[nodiscard]] Moments moments_around(const CellIndex& i) const;

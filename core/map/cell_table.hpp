@@ -39,7 +39,7 @@ class CellTable {
   /// Where the search for a cell begins. 4 x 4 cells of a level lie side by side, and after them
   /// those above: who looks around a cell, or for features beside each other, mostly reads the same
   /// few cache lines.
-  [[nodiscard]] std::size_t home_of(const CellIndex& i) const {
+  [[nodiscard]] std::size_t bucket_of(const CellIndex& i) const {
     constexpr std::int32_t kInside = (1 << kBlockBits) - 1;
     const auto block = [](std::int32_t v) {
       return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v >> kBlockBits));
@@ -58,8 +58,8 @@ class CellTable {
            static_cast<std::uint32_t>(i.z) << (2 * kAcrossBits);
   }
   /// Both, of the cell above.
-  [[nodiscard]] std::size_t home_above(std::size_t home) const {
-    return (home + kLevelSlots) & mask_;
+  [[nodiscard]] std::size_t bucket_above(std::size_t bucket) const {
+    return (bucket + kLevelSlots) & mask_;
   }
   [[nodiscard]] static std::uint32_t tag_above(std::uint32_t tag) {
     return tag + (1U << (2 * kAcrossBits));
@@ -75,35 +75,35 @@ class CellTable {
   }
 
   /// Asks the memory for what find() will read.
-  void prefetch(std::size_t home) const { __builtin_prefetch(&slots_[home]); }
+  void prefetch(std::size_t bucket) const { __builtin_prefetch(&slots_[bucket]); }
   /// The cell's number, or kNone.
-  [[nodiscard]] std::int32_t find(std::size_t home, std::uint32_t tag) const {
-    return slots_[slot_from(home, tag)].at;
+  [[nodiscard]] std::int32_t find(std::size_t bucket, std::uint32_t tag) const {
+    return slots_[slot_from(bucket, tag)].at;
   }
   /// Of a cell that is not there.
-  void insert(std::size_t home, std::uint32_t tag, std::int32_t at) {
-    slots_[slot_from(home, tag)] = {at, tag};
+  void insert(std::size_t bucket, std::uint32_t tag, std::int32_t at) {
+    slots_[slot_from(bucket, tag)] = {at, tag};
   }
-  /// Empties a slot. Others may move into it: `home_of_cell(at)` tells where a cell's search
+  /// Empties a slot. Others may move into it: `bucket_of_cell(at)` tells where a cell's search
   /// begins.
-  template <typename HomeOfCell>
-  void remove(std::size_t slot, const HomeOfCell& home_of_cell) {
+  template <typename BucketOfCell>
+  void remove(std::size_t slot, const BucketOfCell& bucket_of_cell) {
     std::size_t hole = slot;
     for (std::size_t next = (hole + 1) & mask_; slots_[next].at != kNone;
          next = (next + 1) & mask_) {
-      const std::size_t home = home_of_cell(slots_[next].at);
-      if (((next - home) & mask_) < ((next - hole) & mask_)) continue;
+      const std::size_t bucket = bucket_of_cell(slots_[next].at);
+      if (((next - bucket) & mask_) < ((next - hole) & mask_)) continue;
       slots_[hole] = slots_[next];
       hole = next;
     }
     slots_[hole] = Slot{};
   }
-  /// Empties the slots from there to the next empty one. Done from the home of every cell there is,
-  /// in any order, it empties the table: what it leaves of a row of slots is the beginning, and a
-  /// cell that is still in it has its home there too. Where cells are few, that is far less than
-  /// the whole table.
-  void clear_from(std::size_t home) {
-    for (; slots_[home].at != kNone; home = after(home)) slots_[home] = Slot{};
+  /// Empties the slots from there to the next empty one. Done from the bucket of every cell there
+  /// is, in any order, it empties the table: what it leaves of a row of slots is the beginning, and
+  /// a cell that is still in it has its bucket there too. Where cells are few, that is far less
+  /// than the whole table.
+  void clear_from(std::size_t bucket) {
+    for (; slots_[bucket].at != kNone; bucket = after(bucket)) slots_[bucket] = Slot{};
   }
 
   [[nodiscard]] const std::vector<Slot>& slots() const { return slots_; }
@@ -118,9 +118,9 @@ class CellTable {
   static constexpr std::size_t kLevelSlots = 1U << (2 * kBlockBits);
 
   /// The slot that holds it, or else the first empty one.
-  [[nodiscard]] std::size_t slot_from(std::size_t home, std::uint32_t tag) const {
-    while (slots_[home].at != kNone && slots_[home].tag != tag) home = (home + 1) & mask_;
-    return home;
+  [[nodiscard]] std::size_t slot_from(std::size_t bucket, std::uint32_t tag) const {
+    while (slots_[bucket].at != kNone && slots_[bucket].tag != tag) bucket = (bucket + 1) & mask_;
+    return bucket;
   }
 
   std::size_t mask_;

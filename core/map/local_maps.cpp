@@ -18,7 +18,7 @@ LocalMaps::LocalMaps(const std::array<std::array<CellMapConfig, 2>, kLevels>& co
 
 void LocalMaps::insert(std::span<const Point> points, std::size_t finest) {
   struct Waiting {
-    std::array<CellMap::Place, kLevels> place;
+    std::array<CellMap::CellKey, kLevels> key;
     PerLevel cell;
   };
   std::array<Waiting, kAtATime> waiting;
@@ -27,19 +27,19 @@ void LocalMaps::insert(std::span<const Point> points, std::size_t finest) {
     points = points.subspan(some.size());
     for (std::size_t level = finest; level < kLevels; ++level) {
       for (std::size_t k = 0; k < some.size(); ++k) {
-        waiting[k].place[level] = at(level, some[k].kind).place_of(some[k].point_m);
+        waiting[k].key[level] = at(level, some[k].kind).key_of(some[k].point_m);
       }
     }
     for (std::size_t level = finest; level < kLevels; ++level) {
       for (std::size_t k = 0; k < some.size(); ++k) {
-        waiting[k].cell[level] = at(level, some[k].kind).open(waiting[k].place[level]);
+        waiting[k].cell[level] = at(level, some[k].kind).find_or_insert(waiting[k].key[level]);
       }
     }
     for (std::size_t k = 0; k < some.size(); ++k) {
-      const CellMap::Reach reach(some[k].reach_m);
+      const CellMap::SampleGap gap(some[k].gap_m);
       for (std::size_t level = finest; level < kLevels; ++level) {
         at(level, some[k].kind)
-            .add(waiting[k].cell[level], waiting[k].place[level], some[k].point_m, reach);
+            .add(waiting[k].cell[level], waiting[k].key[level], some[k].point_m, gap);
       }
     }
   }

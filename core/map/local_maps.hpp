@@ -41,7 +41,7 @@ class LocalMaps {
   /// levels.
   struct Point {
     Eigen::Vector3d point_m;
-    Eigen::Vector3f reach_m;
+    Eigen::Vector3f gap_m;
     FeatureKind kind;
   };
   void insert(std::span<const Point> points, std::size_t finest);

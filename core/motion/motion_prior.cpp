@@ -29,9 +29,8 @@ struct Step {
   }
 };
 
-}  // namespace
-
-void add_prior(const Prior& prior, const Unknowns& x, NormalMatrix& H, Unknowns& b) {
+/// With the process noise as it is.
+void add_gaussian_prior(const Prior& prior, const Unknowns& x, NormalMatrix& H, Unknowns& b) {
   H.topLeftCorner<kKnotSize, kKnotSize>() += prior.begin_information;
   b.head<kKnotSize>() -= prior.begin_information * (x.head<kKnotSize>() - prior.begin_mean);
   const Step step(prior);
@@ -46,6 +45,12 @@ void add_prior(const Prior& prior, const Unknowns& x, NormalMatrix& H, Unknowns&
     b.segment<kKnotSize>(i) += Wphi.transpose() * e;
     b.segment<kKnotSize>(j) -= step.W * e;
   }
+}
+
+}  // namespace
+
+void add_prior(const Prior& prior, const Unknowns& x, NormalMatrix& H, Unknowns& b) {
+  add_gaussian_prior(inflated(prior, normalised_innovation(prior, x)), x, H, b);
 }
 
 Vector6d mean_by_kind(const Vector6d& of_axes) {
@@ -79,6 +84,11 @@ KnotInformation process_information(const Vector6d& acceleration_density, double
   W.bottomLeftCorner<6, 6>().diagonal() = -6.0 / (dt_s * dt_s) * w;
   W.bottomRightCorner<6, 6>().diagonal() = 4.0 / dt_s * w;
   return W;
+}
+
+Matrix6d motion_information(const Prior& prior) {
+  const KnotInformation noise = process_information(prior.acceleration_density, prior.span_s);
+  return noise.inverse().topLeftCorner<6, 6>().inverse();
 }
 
 int segments_for(const Vector6d& acceleration_density, double span_s, int least) {

@@ -5,8 +5,12 @@
 
 #include <Eigen/Core>
 
-/// What is believed of a scan's motion before its returns are looked at: that it goes on from the
-/// last scan's, with white noise on acceleration (Barfoot, State Estimation for Robotics, ch. 11).
+/// What is known of a scan's motion before its returns are used: it continues that of the last
+/// scan, with white noise on acceleration (Barfoot, State Estimation for Robotics, ch. 11).
+///
+/// Process noise enters here and nowhere else. ProcessNoise estimates its density from the motion
+/// found; predict() puts that into a Prior; the solver takes add_prior(), which inflates it where
+/// the motion departs from the prior, and motion_information().
 namespace lilo::core {
 
 /// J'OJ over all knots.
@@ -29,7 +33,8 @@ struct Prior {
 /// with.
 Vector6d mean_by_kind(const Vector6d& of_axes);
 
-/// Adds the prior to the normal equations H step = b of the deviation `x`.
+/// Adds the prior to the normal equations H step = b of the deviation `x`. Its process noise is
+/// inflated by the normalised innovation of `x`: the prior has heavy tails.
 void add_prior(const Prior& prior, const Unknowns& x, NormalMatrix& H, Unknowns& b);
 
 /// Normalised innovation squared of the motion `x`: how far it departs from a constant velocity, as
@@ -45,6 +50,9 @@ Prior inflated(Prior prior, const Vector6d& innovation);
 /// Information of the change between two knots `dt_s` apart under white noise on acceleration:
 /// inverse of Q = [dt^3/3 Qc, dt^2/2 Qc; dt^2/2 Qc, dt Qc].
 KnotInformation process_information(const Vector6d& acceleration_density, double dt_s);
+
+/// Information of the pose at the end of a scan whose beginning is known exactly.
+Matrix6d motion_information(const Prior& prior);
 
 /// How many segments of a span leave a motion of such a process noise no more than 1 mrad, 1 sigma,
 /// between its knots: between two that are known, white noise of density q on acceleration leaves a

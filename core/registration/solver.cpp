@@ -41,11 +41,12 @@ std::pair<Matrix6d, Vector6d> normal_equations(const ResidualSums& sums) {
 std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t first,
                             std::size_t stride) {
   std::size_t n = 0;
-  for (std::size_t k = first; k < features.size() && n < asked_.size(); k += stride, ++n) {
-    Asked& one = asked_[n];
+  for (std::size_t k = first; k < features.size() && n < correspondences_.size();
+       k += stride, ++n) {
+    Correspondence& one = correspondences_[n];
     const Feature& f = features[k];
     one.feature = &f;
-    one.last = &last_[k];
+    one.cached = &cached_cells_[k];
     one.turned_m = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
     one.point_m = one.turned_m.cast<double>() + sampled_.origin_m(f.s);
   }
@@ -53,21 +54,21 @@ std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t fi
 }
 
 /// Where a level knows too little the next coarser one is asked.
-void Solver::match(std::span<Asked> asked, LocalMaps& maps, std::size_t finest) {
-  std::array<Asked*, kAtATime> unmatched;
+void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest) {
+  std::array<Correspondence*, kAtATime> unmatched;
   std::size_t n = 0;
-  for (Asked& one : asked) unmatched[n++] = &one;
+  for (Correspondence& one : some) unmatched[n++] = &one;
   for (std::size_t level = finest; level < LocalMaps::kLevels && n > 0; ++level) {
     const auto left = std::span(unmatched).first(n);
-    for (Asked* one : left) {
-      one->place = maps.at(level, one->feature->kind).place_of(one->point_m, (*one->last)[level]);
+    for (Correspondence* one : left) {
+      one->key = maps.at(level, one->feature->kind).key_of(one->point_m, (*one->cached)[level]);
     }
-    for (Asked* one : left) {
-      one->cell = maps.at(level, one->feature->kind).cell_at(one->place);
-      (*one->last)[level] = one->cell;
+    for (Correspondence* one : left) {
+      one->cell = maps.at(level, one->feature->kind).cell_at(one->key);
+      (*one->cached)[level] = one->cell;
     }
     n = 0;
-    for (Asked* one : left) {
+    for (Correspondence* one : left) {
       one->match = maps.at(level, one->feature->kind).match(one->cell, one->point_m);
       if (one->match.information == nullptr) unmatched[n++] = one;
     }
@@ -79,15 +80,15 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   sample(solution.trajectory, sampled_);
   for (ResidualSums& bin : bins_) bin.setZero();
   Sums sums;
-  solution.asked = solution.matched = 0;
+  solution.looked_up = solution.matched = 0;
   const float data_weight = config_.data_weight * static_cast<float>(stride);
   const float kernel_scale = stride > 1 ? kCoarseKernels : 1.0F;
   for (std::size_t k = 0, n = 0; k < features.size(); k += n * stride) {
     n = look_up(features, k, stride);
-    solution.asked += static_cast<int>(n);
-    const std::span asked = std::span(asked_).first(n);
-    match(asked, maps, finest);
-    for (const Asked& one : asked) {
+    solution.looked_up += static_cast<int>(n);
+    const std::span some = std::span(correspondences_).first(n);
+    match(some, maps, finest);
+    for (const Correspondence& one : some) {
       if (one.match.information == nullptr) continue;
       ++solution.matched;
       add_residual(one, kernel_scale, data_weight, sums);
@@ -98,7 +99,8 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   solution.mean_square = sums.weights > 0.0 ? sums.squares / sums.weights : 0.0;
 }
 
-void Solver::add_residual(const Asked& one, float kernel_scale, float data_weight, Sums& sums) {
+void Solver::add_residual(const Correspondence& one, float kernel_scale, float data_weight,
+                          Sums& sums) {
   const bool ground = one.feature->kind == FeatureKind::ground;
   const Eigen::Vector3f& r = one.match.from_mean_m;
   const Symmetric& i = *one.match.information;
@@ -188,14 +190,13 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   std::size_t stride = kCoarseStride;
   Solution solution = unaligned(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
-  last_.assign(features.size(), LocalMaps::kNoCells);
+  cached_cells_.assign(features.size(), LocalMaps::kNoCells);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, stride == 1 ? finest : LocalMaps::kUsual, solution);
     Equations data = data_equations(prior, solution.data_information);
     const Unknowns x = solution.trajectory.knots;
     auto& [H, b] = data;
-    const Vector6d innovation = normalised_innovation(prior, x);
-    add_prior(inflated(prior, innovation), x, H, b);
+    add_prior(prior, x, H, b);
     const Unknowns step = H.ldlt().solve(b);
     if (!step.allFinite()) break;
     solution.trajectory.knots += (stride == 1 ? kFurther : 1.0) * step;
@@ -211,8 +212,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
       solution.design_effect = design_effect(step, prior);
     }
   }
-  const KnotInformation noise = process_information(prior.acceleration_density, prior.span_s);
-  solution.motion_information = noise.inverse().topLeftCorner<6, 6>().inverse();
+  solution.motion_information = motion_information(prior);
   return solution;
 }
 

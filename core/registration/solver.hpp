@@ -4,6 +4,7 @@
 #include "core/map/local_maps.hpp"
 #include "core/motion/motion_prior.hpp"
 #include "core/motion/trajectory.hpp"
+#include "core/odometry_config.hpp"
 
 #include <Eigen/Core>
 
@@ -14,11 +15,12 @@
 /// Alignment of one scan with the local map: Gauss-Newton over the knots of its trajectory.
 namespace lilo::core {
 
+/// Defaults are those of DefaultConfig, where each is explained.
 struct SolverConfig {
-  int max_iterations = 12;
-  float ground_kernel = 1.5F;     ///< Cauchy scale in sigmas of the map: ground is rough
-  float structure_kernel = 0.7F;  ///< tighter: structure moves and hides
-  float data_weight = 0.1F;  ///< neighbouring residuals are not independent: each counts for less
+  int max_iterations = DefaultConfig{}.max_iterations;
+  float ground_kernel = static_cast<float>(DefaultConfig{}.ground_kernel);
+  float structure_kernel = static_cast<float>(DefaultConfig{}.structure_kernel);
+  float data_weight = static_cast<float>(DefaultConfig{}.data_weight);
 };
 
 struct Solution {
@@ -30,7 +32,7 @@ struct Solution {
   Matrix6d motion_information = Matrix6d::Zero();
   /// Variance of the pose over that of independent residuals of one sigma; by axis.
   Vector6d design_effect = Vector6d::Zero();
-  int asked = 0;                 ///< features looked up
+  int looked_up = 0;             ///< features looked up
   int matched = 0;               ///< features that found a distribution
   double inliers = 0;            ///< sum of robust weights
   double structure_inliers = 0;  ///< of them what is not ground
@@ -49,7 +51,7 @@ class Solver {
  public:
   /// `most_features`: of one solve(), for which memory is reserved.
   Solver(const SolverConfig& config, std::size_t most_features) : config_(config) {
-    last_.reserve(most_features);
+    cached_cells_.reserve(most_features);
   }
   /// The prediction, as though nothing had matched.
   [[nodiscard]] Solution unaligned(const Prior& prior) const;
@@ -61,12 +63,12 @@ class Solver {
   static constexpr int kBins = 32;  // a scan's residuals share one of so many instants
   static constexpr std::size_t kAtATime = 32;
   /// A feature under the trajectory, and what it matches.
-  struct Asked {
+  struct Correspondence {
     const Feature* feature = nullptr;
-    LocalMaps::PerLevel* last = nullptr;  // its cells in the step before
-    Eigen::Vector3f turned_m;             // in the odometry's axes, from the sensor
-    Eigen::Vector3d point_m;              // in the odometry's frame
-    CellMap::Place place;
+    LocalMaps::PerLevel* cached = nullptr;  // its cells in the step before
+    Eigen::Vector3f turned_m;               // in the odometry's axes, from the sensor
+    Eigen::Vector3d point_m;                // in the odometry's frame
+    CellMap::CellKey key;
     std::int32_t cell = CellMap::kNone;
     Match match;
   };
@@ -81,16 +83,16 @@ class Solver {
   void accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                   std::size_t finest, Solution& solution);
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);
-  static void match(std::span<Asked> asked, LocalMaps& maps, std::size_t finest);
-  void add_residual(const Asked& one, float kernel_scale, float data_weight, Sums& sums);
+  static void match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest);
+  void add_residual(const Correspondence& one, float kernel_scale, float data_weight, Sums& sums);
   Vector6d design_effect(const Unknowns& step, const Prior& prior) const;
   Equations data_equations(const Prior& prior, Matrix6d& data_information) const;
 
   SolverConfig config_;
   Sampled sampled_;
   std::array<ResidualSums, kBins + 1> bins_;
-  std::array<Asked, kAtATime> asked_;
-  std::vector<LocalMaps::PerLevel> last_;
+  std::array<Correspondence, kAtATime> correspondences_;
+  std::vector<LocalMaps::PerLevel> cached_cells_;
 };
 
 }  // namespace lilo::core

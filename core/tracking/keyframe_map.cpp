@@ -7,7 +7,7 @@
 namespace lilo::core {
 namespace {
 
-constexpr int kYoung = 5;  // keyframes of a map that may know too little
+constexpr int kYoungMap = 5;  // keyframes of a map that may know too little
 
 LocalMaps make_cells(const DefaultConfig& c) {
   const auto map = [&](FeatureKind kind, double cell_m, int capacity) {
@@ -63,7 +63,7 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
   if (scan.use != MapUse::keyframe || !is_due(scan)) return false;
   hold(scan.features, scan.solution.trajectory, scan.timing.end_ns, scan.finest_level);
   // While there is little else, a scan late is too late.
-  if (keyframes_ < kYoung) insert_held();
+  if (keyframes_ < kYoungMap) insert_held();
   ++keyframes_;
   T_odom_keyframe_ = scan.T_odom_sensor;
   return true;
@@ -75,7 +75,7 @@ bool KeyframeMap::is_due(const AlignedScan& scan) const {
   constexpr double kKnowsEnough = 0.5;
   if (keyframes_ == 0) return true;
   const Solution& solution = scan.solution;
-  if (keyframes_ < kYoung && solution.matched < kKnowsEnough * solution.asked) return true;
+  if (keyframes_ < kYoungMap && solution.matched < kKnowsEnough * solution.looked_up) return true;
   const Pose moved_by = T_odom_keyframe_.inverse() * scan.T_odom_sensor;
   return moved_by.translation_m.norm() >= config_.keyframe_m ||
          so3_log(moved_by.rotation).norm() >= config_.keyframe_rad;

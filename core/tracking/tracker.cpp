@@ -45,7 +45,7 @@ Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, 
   if (!is_first() && alignment_.status != TrackingStatus::lost) {
     alignment_.weak = local_.find_weak_directions(scan_.timing, alignment_.solution);
   }
-  const Estimate result = estimate(scan);
+  Estimate result = estimate(scan);
   hook(Stage::align);
   return result;
 }

@@ -59,9 +59,9 @@ TEST_F(Filled, FindsTheCellWhereverThePointWasBefore) {
   for (int k = 0; k < 1000; ++k) {
     const Eigen::Vector3d before(uniform(0, 5), uniform(0, 5), 0.2);
     const Eigen::Vector3d now = before + Eigen::Vector3d(uniform(-1, 1), 0.0, uniform(-0.3, 0.3));
-    const std::int32_t last = map_.cell_at(map_.place_of(before));
-    const std::int32_t cell = map_.cell_at(map_.place_of(now, last));
-    EXPECT_EQ(cell, map_.cell_at(map_.place_of(now)));
+    const std::int32_t last = map_.cell_at(map_.key_of(before));
+    const std::int32_t cell = map_.cell_at(map_.key_of(now, last));
+    EXPECT_EQ(cell, map_.cell_at(map_.key_of(now)));
     ++(cell == CellMap::kNone ? gone : cell == last ? same : other);
   }
   EXPECT_GT(std::min({same, other, gone}), 100);

@@ -20,12 +20,12 @@ TEST(CellTable, KnowsWhatAnOrderedMapKnows) {
   std::vector<CellIndex> cells;  // by number
   std::mt19937 rng(7);
   std::uniform_int_distribution<int> across(-6, 5), level(-2, 1);
-  const auto home_of = [&](std::int32_t at) {
-    return table.home_of(cells[static_cast<std::size_t>(at)]);
+  const auto bucket_of = [&](std::int32_t at) {
+    return table.bucket_of(cells[static_cast<std::size_t>(at)]);
   };
   for (int turn = 0; turn < 20000; ++turn) {
     const CellIndex i{across(rng), across(rng), level(rng)};
-    const std::size_t home = table.home_of(i);
+    const std::size_t home = table.bucket_of(i);
     const std::uint32_t tag = CellTable::tag_of(i);
     const auto known = truth.find({i.x, i.y, i.z});
     if (known == truth.end()) {
@@ -43,15 +43,15 @@ TEST(CellTable, KnowsWhatAnOrderedMapKnows) {
     const auto slot = std::find_if(slots.begin(), slots.end(),
                                    [&](const CellTable::Slot& s) { return s.at == known->second; });
     ASSERT_NE(slot, slots.end());
-    table.remove(static_cast<std::size_t>(slot - slots.begin()), home_of);
+    table.remove(static_cast<std::size_t>(slot - slots.begin()), bucket_of);
     truth.erase(known);
   }
   EXPECT_GT(truth.size(), 100U);
   for (const auto& [index, at] : truth) {
     const auto [x, y, z] = index;
-    EXPECT_EQ(table.find(table.home_of({x, y, z}), CellTable::tag_of({x, y, z})), at);
+    EXPECT_EQ(table.find(table.bucket_of({x, y, z}), CellTable::tag_of({x, y, z})), at);
   }
-  for (const auto& [index, at] : truth) table.clear_from(home_of(at));
+  for (const auto& [index, at] : truth) table.clear_from(bucket_of(at));
   EXPECT_TRUE(std::all_of(table.slots().begin(), table.slots().end(),
                           [](const CellTable::Slot& s) { return s.at == CellTable::kNone; }));
 }
@@ -71,7 +71,7 @@ TEST(CellTable, KnowsTheCellAbove) {
   const CellTable table(100);
   for (const CellIndex i : {CellIndex{3, -5, 7}, CellIndex{-1, -1, -1}, CellIndex{0, 0, 511}}) {
     const CellIndex above{i.x, i.y, i.z + 1};
-    EXPECT_EQ(table.home_above(table.home_of(i)), table.home_of(above));
+    EXPECT_EQ(table.bucket_above(table.bucket_of(i)), table.bucket_of(above));
     EXPECT_EQ(CellTable::tag_above(CellTable::tag_of(i)), CellTable::tag_of(above));
   }
 }

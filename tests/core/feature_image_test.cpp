@@ -27,7 +27,7 @@ double azimuth_of(int column, int columns) {
   return std::numbers::pi * (1.0 - 2.0 * (column + 0.5) / columns);
 }
 
-Eigen::Vector3d place_of(const Feature& f) {
+Eigen::Vector3d key_of(const Feature& f) {
   return Eigen::Vector3f(f.x_m, f.y_m, f.z_m).cast<double>();
 }
 
@@ -74,7 +74,7 @@ TEST(FeatureImage, WhatOneRingHitsMayBeAsHighAsTheNextOneLooks) {
     scan.returns.push_back(return_at(k16, 9, azimuth, 30.0 / std::cos(azimuth)));
   }
   for (const Feature& f : image.build(scan)) {
-    const Eigen::Vector3d p = place_of(f), up = reach_of(f);
+    const Eigen::Vector3d p = key_of(f), up = reach_of(f);
     EXPECT_NEAR(up.norm(), p.norm() * gap_rad, 1e-3);
     EXPECT_NEAR(up.normalized().dot(p.normalized()), 0.0, 1e-5);
     EXPECT_GT(up.z(), 0.0);
@@ -126,8 +126,8 @@ TEST(FeatureImage, BelievesTheGroundBetweenNeighbouringRingsOnlyUpToTenMetres) {
     if (f.ring == 7) continue;  // meets the ground 86 m off, three times as far as the next
     ASSERT_LT(f.ring, 7);
     ++count[f.ring];
-    const double flat_m = place_of(f).head<2>().norm();
-    const double reach_flat_m = place_of(f).head<2>().dot(reach_of(f).head<2>()) / flat_m;
+    const double flat_m = key_of(f).head<2>().norm();
+    const double reach_flat_m = key_of(f).head<2>().dot(reach_of(f).head<2>()) / flat_m;
     if (f.ring == 6) {  // 28.6 m away, the ring below 17.1 m
       EXPECT_NEAR(f.dz_m, flat_m * 2.0 * std::numbers::pi / 180.0, 1e-3);
     } else {  // the ring below is nearer; the lowest has only the one above
@@ -148,7 +148,7 @@ TEST(FeatureImage, MakesNoRampOfFloorAndWall) {
   int ground = 0;
   for (const Feature& f : image.build(test::still_scan_of(hall, k16, {}))) {
     if (f.kind != FeatureKind::ground) continue;
-    const Eigen::Vector3d p = place_of(f), reach = reach_of(f);
+    const Eigen::Vector3d p = key_of(f), reach = reach_of(f);
     EXPECT_NEAR(p.z(), -0.8, 1e-3) << int{f.ring};
     const bool along_floor = std::abs(reach.z()) < 1e-3;
     const bool nobody_knows = std::abs(reach.normalized().dot(p.normalized())) < 1e-3;
@@ -241,7 +241,7 @@ TEST(FeatureImage, APixelKeepsItsFirstGoodReturn) {
     EXPECT_GT(expected.size(), good.returns.size() / 2);
     ASSERT_EQ(found.size(), expected.size()) << rings << " rings";
     for (std::size_t k = 0; k < found.size(); ++k) {
-      ASSERT_EQ(place_of(found[k]), place_of(expected[k])) << rings << " rings, feature " << k;
+      ASSERT_EQ(key_of(found[k]), key_of(expected[k])) << rings << " rings, feature " << k;
       ASSERT_EQ(found[k].s, expected[k].s);
     }
   }

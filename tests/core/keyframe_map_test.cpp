@@ -13,7 +13,7 @@ Solution solution_at(const Pose& T_begin, int matched = 1000) {
   Solution solution;
   solution.trajectory.T_begin = T_begin;
   solution.trajectory.knots = Unknowns::Zero(Eigen::Index{kKnotSize} * 2);
-  solution.asked = 1000;
+  solution.looked_up = 1000;
   solution.matched = matched;
   return solution;
 }
