@@ -76,12 +76,15 @@ class Live(WithPrograms):
         view, browser = self.view("--daemon-port", lilod.port), self.browser()
         browser.open(view.url)
         browser.wait(f"window.lilo && lilo.source.view.answers && {WORD} === 'No poses'")
+        # Without the picture at first: drawn in software on a busy machine, one takes seconds, and
+        # the words do not wait for it.
+        browser.run("lilo.scene.draw_ = lilo.scene.draw, lilo.scene.draw = () => {}, 0")
         replay = self.keep(lilod.replay(ARGS.capture))
         browser.wait(f"lilo.store.frames.length > 60 && {STATUS} === 'tracking'", SLOW_S)
-        shot(browser, "live", rests=False)
         self.expect_status_to_change(browser, replay)
-        self.expect_last_pose(browser, lilod)
+        browser.run("lilo.scene.draw = lilo.scene.draw_, 0")
         shot(browser, "unplugged")
+        self.expect_last_pose(browser, lilod)
         before = browser.run(LAST)
         lilod.kill()
         browser.wait(f"{WORD} === 'No answer'")
@@ -98,19 +101,16 @@ class Live(WithPrograms):
         self.assertEqual(browser.console, [])
 
     def expect_status_to_change(self, browser, replay):
-        """By the page's own clock: from the last pose to another colour. Without the picture: drawn in
-        software on a busy machine, one takes seconds, and it is not what is asked about."""
-        browser.run("lilo.scene.draw_ = lilo.scene.draw, lilo.scene.draw = () => {}, 0")
-        browser.run("new Promise((done) => requestAnimationFrame(() => setTimeout(done, 500)))")
-        browser.wait("performance.now() - lilo.store.poseAt < 200")
-        browser.run(f"""window.changed = new Promise((done) => new MutationObserver(() =>
-          {STATUS} !== 'tracking' && done(performance.now() - lilo.store.poseAt))
-          .observe(document.getElementById('status'), {{ attributes: true }})); 0""")
+        """Ten times a second the page says how it is; whenever it does, it calls nothing tracking
+        that has been silent for a second. On a busy machine it says so less often."""
+        browser.run(f"""window.said = []; new MutationObserver(() =>
+          said.push([performance.now() - lilo.store.poseAt, {STATUS}]))
+          .observe(document.getElementById('status'), {{ attributes: true }}); 0""")
         replay.end()
-        after_ms = browser.run("window.changed")
+        browser.wait(f"{STATUS} !== 'tracking'")
         self.assertEqual(browser.run(WORD), "No poses")
-        self.assertLess(after_ms, 1000)
-        browser.run("lilo.scene.draw = lilo.scene.draw_, 0")
+        silences = [ms for ms, status in browser.run("said") if status == "tracking"]
+        self.assertLess(max(silences, default=0), 1000)
 
     def expect_last_pose(self, browser, lilod):
         said = lilod.ask(query="pose")
