@@ -181,7 +181,7 @@ void solver_round(benchmark::State& state) {
   maps.insert(points, core::LocalMaps::kUsual);
   core::Selection selection(1200, 1500);
   const auto& chosen = selection.choose(all);
-  core::Solver solver({.segments = 2, .max_iterations = 1}, 4096);
+  core::Solver solver({.max_iterations = 1}, 4096);
   int matched = 0;
   for (auto _ : state) matched = solver.solve(chosen, maps, {}).matched;
   state.counters["matched"] = matched;
