@@ -1,5 +1,5 @@
 #include "tests/sim/rig_fixture.hpp"
-#include "tools/sim/pcap_writer.hpp"
+#include "tools/sim/addresses.hpp"
 #include "tools/sim/position_packet.hpp"
 
 #include <gtest/gtest.h>
@@ -46,9 +46,10 @@ TEST_P(Pcap, LibpcapReadsTheFramesBack) {
     packet.payload[k] = static_cast<std::uint8_t>(k);
   {
     PcapWriter writer(path.string(), nanoseconds);
-    writer.write(packet, 1'700'000'000'123'456'789);
+    const auto payload = std::as_bytes(std::span(packet.payload));
+    writer.write(addresses_of(packet), payload, 1'700'000'000'123'456'789);
     packet.port = 8308;
-    writer.write(packet, 1'700'000'001'000'000'001);
+    writer.write(addresses_of(packet), payload, 1'700'000'001'000'000'001);
     writer.close();
   }
   char reason[PCAP_ERRBUF_SIZE];

@@ -1,8 +1,8 @@
 #include "tools/sim/simulate.hpp"
 
+#include "tools/sim/addresses.hpp"
 #include "tools/sim/hdl64_encoder.hpp"
 #include "tools/sim/meta_writer.hpp"
-#include "tools/sim/pcap_writer.hpp"
 #include "tools/sim/position_packet.hpp"
 #include "tools/sim/truth_writer.hpp"
 #include "tools/sim/vlp16_encoder.hpp"
@@ -40,7 +40,7 @@ class Capture {
     const bool stepped = faults.host_step_at_s >= 0.0 &&
                          static_cast<double>(received) * 1e-9 >= faults.host_step_at_s;
     const double step_s = stepped ? faults.host_step_s : 0.0;
-    writer_.write(packet,
+    writer_.write(addresses_of(packet), std::as_bytes(std::span(packet.payload)),
                   options_.start_utc_ns + received + static_cast<std::int64_t>(step_s * 1e9));
   }
 

@@ -1,4 +1,4 @@
-#include "tools/sim/pcap_writer.hpp"
+#include "tools/pcap/pcap_writer.hpp"
 
 #include <fmt/format.h>
 #include <pcap/pcap.h>
@@ -6,8 +6,9 @@
 #include <array>
 #include <cstdio>
 #include <stdexcept>
+#include <vector>
 
-namespace lilo::sim {
+namespace lilo {
 namespace {
 
 constexpr std::size_t kEthernet = 14, kIp = 20, kUdp = 8;
@@ -27,26 +28,34 @@ std::uint32_t ip_checksum(const std::vector<std::uint8_t>& frame) {
   return ~sum & 0xFFFFU;
 }
 
-/// Everything before the payload, as a sensor at its factory address sends it. UDP checksum 0:
-/// none.
-std::vector<std::uint8_t> frame_of(const Packet& packet, std::uint16_t identification) {
+void put_be32(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint32_t value) {
+  put_be16(bytes, at, value >> 16U);
+  put_be16(bytes, at + 2, value);
+}
+
+/// Everything before the payload, and that. A Velodyne's card is the sender whoever it was: the
+/// socket did not see it. UDP checksum 0: none.
+std::vector<std::uint8_t> frame_of(const UdpAddresses& addresses,
+                                   std::span<const std::byte> payload,
+                                   std::uint16_t identification) {
   constexpr std::array<std::uint8_t, kEthernet> kLink{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x60,
                                                       0x76, 0x88, 0x20, 0x12, 0x6E, 0x08, 0x00};
-  constexpr std::array<std::uint8_t, 8> kAddresses{192, 168, 1, 201, 255, 255, 255, 255};
   std::vector<std::uint8_t> frame(kEthernet + kIp + kUdp, 0);
   std::copy(kLink.begin(), kLink.end(), frame.begin());
   frame[kEthernet] = 0x45;
-  put_be16(frame, kEthernet + 2, static_cast<std::uint32_t>(kIp + kUdp + packet.payload.size()));
+  put_be16(frame, kEthernet + 2, static_cast<std::uint32_t>(kIp + kUdp + payload.size()));
   put_be16(frame, kEthernet + 4, identification);
   put_be16(frame, kEthernet + 6, 0x4000);  // do not fragment
   frame[kEthernet + 8] = 255;
   frame[kEthernet + 9] = 17;
-  std::copy(kAddresses.begin(), kAddresses.end(), frame.begin() + kEthernet + 12);
+  put_be32(frame, kEthernet + 12, addresses.source_ipv4);
+  put_be32(frame, kEthernet + 16, addresses.destination_ipv4);
   put_be16(frame, kEthernet + 10, ip_checksum(frame));
-  put_be16(frame, kEthernet + kIp, packet.port);
-  put_be16(frame, kEthernet + kIp + 2, packet.port);
-  put_be16(frame, kEthernet + kIp + 4, static_cast<std::uint32_t>(kUdp + packet.payload.size()));
-  frame.insert(frame.end(), packet.payload.begin(), packet.payload.end());
+  put_be16(frame, kEthernet + kIp, addresses.source_port);
+  put_be16(frame, kEthernet + kIp + 2, addresses.destination_port);
+  put_be16(frame, kEthernet + kIp + 4, static_cast<std::uint32_t>(kUdp + payload.size()));
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(payload.data());
+  frame.insert(frame.end(), bytes, bytes + payload.size());
   return frame;
 }
 
@@ -79,8 +88,9 @@ PcapWriter::~PcapWriter() {
   if (impl_->handle != nullptr) pcap_close(impl_->handle);
 }
 
-void PcapWriter::write(const Packet& packet, std::int64_t received_utc_ns) {
-  const std::vector<std::uint8_t> frame = frame_of(packet, ++impl_->identification);
+void PcapWriter::write(const UdpAddresses& addresses, std::span<const std::byte> payload,
+                       std::int64_t received_utc_ns) {
+  const std::vector<std::uint8_t> frame = frame_of(addresses, payload, ++impl_->identification);
   pcap_pkthdr header{};
   header.ts.tv_sec = received_utc_ns / 1'000'000'000;
   header.ts.tv_usec = received_utc_ns % 1'000'000'000 / impl_->tick_ns;
@@ -96,4 +106,4 @@ void PcapWriter::close() {
     throw std::runtime_error(fmt::format("{}: could not be written completely", impl_->path));
 }
 
-}  // namespace lilo::sim
+}  // namespace lilo
