@@ -1,6 +1,5 @@
 #include "tools/run/run_report.hpp"
 
-#include "tools/progress_bar.hpp"
 #include "tools/run/statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -31,12 +30,6 @@ TEST(Statistics, TenthsAreEqualParts) {
   EXPECT_EQ(means[1], 30.0);   // 20 to 40
   EXPECT_EQ(means[9], 194.0);  // 184 to 204
   EXPECT_EQ(means_of_tenths({1.0, 2.0})[0], 0.0);
-}
-
-TEST(ProgressBar, FillsFromLeftToRight) {
-  EXPECT_EQ(progress_text(0.5, 4), "[##..]  50 %");
-  EXPECT_EQ(progress_text(1.2, 4), "[####] 100 %");
-  EXPECT_EQ(progress_text(-0.1, 4), "[....]   0 %");
 }
 
 /// A few scans, then the file breaks off.

@@ -4,7 +4,7 @@
 #include "tools/bench/paper/paper_bench.hpp"
 #include "tools/bench/worlds/worlds_command.hpp"
 #include "tools/cli.hpp"
-#include "tools/progress_bar.hpp"
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/stop_signals.hpp"
 #include "tools/tool_config.hpp"
 
@@ -32,7 +32,7 @@ void run_bench(const BenchOptions& options) {
     {
       ProgressBar bar;
       runs.push_back(run_paired(set, config, options.most_scans, [&](double part) {
-        if (bar.due()) bar.show(part, set.name);
+        if (bar.due()) bar.show({part, 0, set.name});
         return !stop.raised();
       }));
     }

@@ -1,7 +1,7 @@
 #include "tools/info/info_command.hpp"
 
 #include "tools/info/info_report.hpp"
-#include "tools/progress_bar.hpp"
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/tool_config.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ RecordingInfo read_with_progress(ScanSource& source) {
   std::size_t scans = 0;
   return read_recording(source, [&](const Scan&) {
     ++scans;
-    if (bar.due()) bar.show(source.progress(), fmt::format("{} scans", scans));
+    if (bar.due()) bar.show({source.progress(), scans, "scans"});
   });
 }
 

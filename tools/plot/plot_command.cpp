@@ -10,7 +10,7 @@
 #include "tools/plot/features_view.hpp"
 #include "tools/plot/scan_view.hpp"
 #include "tools/plot/trajectory_view.hpp"
-#include "tools/progress_bar.hpp"
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/tool_config.hpp"
 
 #include <fmt/chrono.h>
@@ -60,7 +60,7 @@ MapPoints build_map(ScanSource& source, const Trajectory& trajectory) {
   Scan scan;
   for (std::size_t k = 0; source.next(scan); ++k) {
     if (const auto pose = pose_of(trajectory, scan, k)) map.add(scan, *pose);
-    if (bar.due()) bar.show(source.progress(), "building the map");
+    if (bar.due()) bar.show({source.progress(), k + 1, "scans"});
   }
   return map;
 }

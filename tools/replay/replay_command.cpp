@@ -1,16 +1,15 @@
 #include "tools/replay/replay_command.hpp"
 
 #include "tools/cli.hpp"
-#include "tools/clock.hpp"
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/replay/player.hpp"
 #include "tools/stop_signals.hpp"
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
+#include <optional>
 #include <stdexcept>
-#include <unistd.h>
 
 namespace lilo {
 namespace {
@@ -31,37 +30,19 @@ std::string summary(const ReplayCounts& counts) {
       static_cast<double>(counts.latest_ns) * 1e-6);
 }
 
-/// A line that renews itself twice a second, where someone looks.
-class Ticker {
- public:
-  void show(const ReplayCounts& counts) {
-    if (!visible_ || monotonic_ns() < next_ns_) return;
-    next_ns_ = monotonic_ns() + 500'000'000;
-    fmt::print(stderr, "\r\033[K{}", summary(counts));
-    std::fflush(stderr);
-  }
-  void clear() const {
-    if (visible_) fmt::print(stderr, "\r\033[K");
-  }
-
- private:
-  bool visible_ = isatty(STDERR_FILENO) != 0;
-  std::int64_t next_ns_ = 0;
-};
-
 void run_replay(const Command& command) {
   StopSignals stop;
-  Ticker ticker;
+  std::optional<ProgressBar> bar(std::in_place);
   std::unique_ptr<PacketSource> source = open_pcap(command.file);
   Player player(command.replay);
   const auto go_on = [&](const ReplayCounts& counts) {
-    ticker.show(counts);
+    if (bar->due()) bar->show({command.loop ? 0.0 : source->progress(), counts.packets, "packets"});
     return !stop.raised();
   };
   while (player.play(*source, go_on) && command.loop && player.counts().packets > 0) {
     source = open_pcap(command.file);
   }
-  ticker.clear();
+  bar.reset();
   fmt::print("{}\n", summary(player.counts()));
   if (!source->error().empty()) throw std::runtime_error(source->error());
 }

@@ -3,11 +3,11 @@
 #include "tools/bench/benchmark_set.hpp"
 #include "tools/cli.hpp"
 #include "tools/plot/trajectory_view.hpp"
-#include "tools/progress_bar.hpp"
 #include "tools/run/map_file.hpp"
 #include "tools/run/odometry_run.hpp"
 #include "tools/run/pose_log.hpp"
 #include "tools/run/run_report.hpp"
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/run/voxel_map.hpp"
 #include "tools/text_file.hpp"
 #include "tools/tool_config.hpp"
@@ -53,7 +53,7 @@ OdometryRun run_with_progress(ScanSource& source, const Config& config, Follower
     if (followers.log) followers.log->add(scan, estimate);
     if (followers.picture) followers.picture->add(scan, estimate.T_odom_sensor);
     if (followers.map) followers.map->add(scan, estimate.T_odom_sensor);
-    if (bar.due()) bar.show(source.progress(), fmt::format("{} scans", scans));
+    if (bar.due()) bar.show({source.progress(), scans, "scans"});
   });
 }
 

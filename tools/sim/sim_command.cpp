@@ -1,39 +1,17 @@
 #include "tools/sim/sim_command.hpp"
 
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/sim/sim_options.hpp"
 #include "tools/sim/simulate.hpp"
 #include "tools/sim/world.hpp"
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <string>
-#include <unistd.h>
 
 namespace lilo {
 namespace {
-
-/// A bar on a terminal, nothing elsewhere.
-class ProgressBar {
- public:
-  explicit ProgressBar(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) == 1) {}
-
-  void operator()(double done) {
-    const int percent = static_cast<int>(100.0 * done);
-    if (!shown_ || percent == last_) return;
-    last_ = percent;
-    constexpr int kWidth = 40;
-    const int filled = kWidth * percent / 100;
-    fmt::print(stderr, "\r[{:=<{}}{: <{}}] {:3} %{}", "", filled, "", kWidth - filled, percent,
-               percent == 100 ? "\n" : "");
-    std::fflush(stderr);
-  }
-
- private:
-  bool shown_;
-  int last_ = -1;
-};
 
 std::string footer() {
   std::string text = "\nWorlds (default speed):\n";
@@ -50,12 +28,18 @@ std::string footer() {
          "at the start of revolution 0, times are UTC. Same options, same bytes.\n";
 }
 
+sim::SimSummary simulate(const sim::SimArguments& arguments) {
+  if (arguments.quiet) return sim::simulate(arguments.options, arguments.folder, [](double) {});
+  ProgressBar bar;
+  return sim::simulate(arguments.options, arguments.folder, [&](double part) {
+    if (bar.due()) bar.show({part, 0, arguments.folder});
+  });
+}
+
 void run_sim(const CLI::App& command, sim::SimArguments& arguments) {
   sim::settle(command, arguments);
   sim::check_folder(arguments);
-  ProgressBar bar(!arguments.quiet);
-  const sim::SimSummary summary =
-      sim::simulate(arguments.options, arguments.folder, [&](double done) { bar(done); });
+  const sim::SimSummary summary = simulate(arguments);
   fmt::print("{}: {} revolutions, {} data packets, {:.1f} m driven\n", arguments.folder,
              summary.revolutions, summary.packets_sent, summary.path_length_m);
   const sim::FaultCounts& faults = summary.faults;

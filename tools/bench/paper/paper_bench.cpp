@@ -2,7 +2,7 @@
 
 #include "config/print_config.hpp"
 #include "tools/bench/paper/ledger.hpp"
-#include "tools/progress_bar.hpp"
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/stop_signals.hpp"
 #include "tools/text_file.hpp"
 
@@ -95,7 +95,7 @@ void work_off(const std::vector<Work>& work, const Settings& settings, const std
         result = run_cell(item.cell, *item.set, item.facts, settings, folder, [&](double part) {
           const double all = (static_cast<double>(done) + part) / static_cast<double>(work.size());
           if (bar.due()) {
-            bar.show(all, fmt::format("{}/{} {}", done + 1, work.size(), name_of(item.cell)));
+            bar.show({all, 0, fmt::format("{}/{} {}", done + 1, work.size(), name_of(item.cell))});
           }
           return !stop.raised();
         });

@@ -1,6 +1,6 @@
 #include "tools/bench/worlds/worlds_run.hpp"
 
-#include "tools/progress_bar.hpp"
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/stop_signals.hpp"
 
 #include <fmt/format.h>
@@ -110,8 +110,8 @@ void watch(Work& work, std::size_t all, const std::atomic<unsigned>& working,
   while (working > 0) {
     if (signals.raised()) work.stop();
     if (bar.due()) {
-      bar.show(static_cast<double>(work.done()) / static_cast<double>(all),
-               fmt::format("{}/{}", work.done(), all));
+      bar.show({static_cast<double>(work.done()) / static_cast<double>(all), 0,
+                fmt::format("{}/{}", work.done(), all)});
     }
     std::this_thread::sleep_for(kPeriod);
   }
