@@ -1,6 +1,7 @@
 #include "config/config.hpp"
 #include "config/print_config.hpp"
 #include "daemon/health_monitor.hpp"
+#include "config/version.hpp"
 #include "daemon/log.hpp"
 #include "daemon/service.hpp"
 
@@ -45,7 +46,7 @@ int run(const Options& options) {
 
 int run(int argc, char** argv) {
   CLI::App app{"lilod: LiDAR odometry daemon. Packets in by UDP, poses out by UDP/JSON."};
-  app.set_version_flag("--version", "lilod " LILO_VERSION);
+  app.set_version_flag("--version", std::string("lilod ") + kVersionText);
   Options options;
   app.add_option("--config", options.config_path, "YAML file; see config/vlp16.yaml");
   app.add_flag("--check-config", options.check_config, "Check the file and end: 0 good, 2 bad");

@@ -1,3 +1,4 @@
+#include "config/version.hpp"
 #include "tools/bench/bench_command.hpp"
 #include "tools/eval/eval_command.hpp"
 #include "tools/info/info_command.hpp"
@@ -12,6 +13,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <string>
 
 namespace {
 
@@ -20,7 +22,7 @@ constexpr int kUsage = 2;    // the command line was wrong
 
 int run(int argc, char** argv) {
   CLI::App app{"lilo: the lilod toolbox", "lilo"};
-  app.set_version_flag("--version", "lilo " LILO_VERSION);
+  app.set_version_flag("--version", std::string("lilo ") + lilo::kVersionText);
   app.require_subcommand(1);
   lilo::add_info_command(app);
   lilo::add_run_command(app);

@@ -15,7 +15,9 @@ const std::string kLilod = LILO_BIN_DIR "/lilod";
 std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
 TEST(CommandLine, VersionAndHelp) {
-  EXPECT_EQ(run_to_end({kLilod, "--version"}).output, "lilod " LILO_VERSION "\n");
+  const std::string version = run_to_end({kLilod, "--version"}).output;
+  EXPECT_EQ(version.rfind("lilod " LILO_VERSION " (", 0), 0U) << version;
+  EXPECT_EQ(lines(version), 1) << version;
   const Finished help = run_to_end({kLilod, "--help"});
   EXPECT_EQ(help.exit_code, 0);
   for (const char* option : {"--config", "--check-config", "--print-config", "--version"}) {
