@@ -64,18 +64,6 @@ PoseMessage message_from(const json& object) {
   return message;
 }
 
-/// Rotations about fixed x, then y, then z (REP-103), in degrees.
-Eigen::Vector3d roll_pitch_yaw_deg(const Eigen::Quaterniond& rotation) {
-  const Eigen::Matrix3d r = rotation.toRotationMatrix();
-  const Eigen::Vector3d rad(std::atan2(r(2, 1), r(2, 2)),
-                            std::atan2(-r(2, 0), std::hypot(r(2, 1), r(2, 2))),
-                            std::atan2(r(1, 0), r(0, 0)));
-  return rad * (180.0 / std::numbers::pi);
-}
-
-/// To three decimals, and never "-0.000".
-double shown(double value) { return std::round(value * 1e3) / 1e3 + 0.0; }
-
 std::string deviation_columns(const PoseMessage& message) {
   if (!message.deviation) return fmt::format("  {:>8}  {:>8}", "-", "-");
   return fmt::format("  {:8.3f}  {:8.3f}", message.deviation->position_m,
@@ -125,6 +113,16 @@ MessageKind parse_message(std::string_view datagram, PoseMessage& message) {
   return MessageKind::pose;
 }
 
+Eigen::Vector3d roll_pitch_yaw_deg(const Eigen::Quaterniond& rotation) {
+  const Eigen::Matrix3d r = rotation.toRotationMatrix();
+  const Eigen::Vector3d rad(std::atan2(r(2, 1), r(2, 2)),
+                            std::atan2(-r(2, 0), std::hypot(r(2, 1), r(2, 2))),
+                            std::atan2(r(1, 0), r(0, 0)));
+  return rad * (180.0 / std::numbers::pi);
+}
+
+double rounded(double value) { return std::round(value * 1e3) / 1e3 + 0.0; }
+
 std::string pose_heading() {
   return "       time UTC       seq  status              x m        y m        z m    roll deg  "
          "pitch deg    yaw deg     +- m    +- deg\n";
@@ -140,8 +138,8 @@ std::string pose_line(const PoseMessage& message) {
   return fmt::format(
       "{:%H:%M:%S}.{:06d}  {:8d}  {:<12}  {:9.3f}  {:9.3f}  {:9.3f}   {:9.3f}  {:9.3f}  "
       "{:9.3f}{}{}\n",
-      utc, stamp_ns % kSecond / 1000, message.seq, message.status, shown(t.x()), shown(t.y()),
-      shown(t.z()), shown(angles.x()), shown(angles.y()), shown(angles.z()),
+      utc, stamp_ns % kSecond / 1000, message.seq, message.status, rounded(t.x()), rounded(t.y()),
+      rounded(t.z()), rounded(angles.x()), rounded(angles.y()), rounded(angles.z()),
       deviation_columns(message), weak_column(message));
 }
 

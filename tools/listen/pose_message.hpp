@@ -38,6 +38,11 @@ enum class MessageKind : std::uint8_t { pose, other, malformed };
 /// know. `malformed`: no JSON object, or a pose without its numbers; `message` is then untouched.
 MessageKind parse_message(std::string_view datagram, PoseMessage& message);
 
+/// Rotations about fixed x, then y, then z (REP-103), in degrees.
+Eigen::Vector3d roll_pitch_yaw_deg(const Eigen::Quaterniond& rotation);
+/// To three decimals, and never "-0.000".
+double rounded(double value);
+
 /// Two heading lines for pose_line().
 std::string pose_heading();
 /// One aligned line: time of day (UTC), seq, status, position, roll pitch yaw in degrees, 1 sigma

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace lilo {
+
+/// `lilo status`: how a daemon is, on one screen.
+void add_status_command(CLI::App& app);
+
+}  // namespace lilo
