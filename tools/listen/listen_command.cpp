@@ -1,7 +1,7 @@
 #include "tools/listen/listen_command.hpp"
 
 #include "tools/cli.hpp"
-#include "tools/clock.hpp"
+#include "tools/connection/connection.hpp"
 #include "tools/listen/pose_message.hpp"
 #include "tools/stop_signals.hpp"
 #include "tools/text_file.hpp"
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -25,6 +26,7 @@ using boost::asio::ip::udp;
 
 struct ListenOptions {
   std::uint16_t port = 9870;
+  LilodAddress lilod{.host = ""};  // empty: listen as a sink
   bool json = false;
   std::string tum;
   std::uint64_t count = 0;  // 0: no end
@@ -82,11 +84,14 @@ class Listener {
   std::string session_;
 };
 
+/// The sink's port; closed when another program has it.
 udp::socket bind_socket(boost::asio::io_context& io, std::uint16_t port) {
   udp::socket socket(io, udp::v4());
   boost::system::error_code error;
   socket.bind({udp::v4(), port}, error);
-  if (error) throw std::runtime_error(fmt::format("UDP port {}: {}", port, error.message()));
+  if (error == boost::asio::error::address_in_use) socket.close();
+  if (error && socket.is_open())
+    throw std::runtime_error(fmt::format("UDP port {}: {}", port, error.message()));
   return socket;
 }
 
@@ -98,21 +103,56 @@ bool wait_for_datagram(udp::socket& socket, StopSignals& stop, double timeout_s)
   return poll(waiting.data(), waiting.size(), timeout_ms) > 0 && !stop.raised();
 }
 
-void run_listen(const ListenOptions& options) {
-  StopSignals stop;
-  boost::asio::io_context io;
-  udp::socket socket = bind_socket(io, options.port);
-  Listener listener(options);
+void listen_as_sink(udp::socket& socket, const ListenOptions& options, StopSignals& stop,
+                    Listener& listener) {
   std::array<char, 65536> buffer{};
   while (!listener.finished() && wait_for_datagram(socket, stop, options.timeout_s)) {
     udp::endpoint sender;
     const std::size_t size = socket.receive_from(boost::asio::buffer(buffer), sender);
     listener.take({buffer.data(), size});
   }
+}
+
+void listen_as_subscriber(const LilodAddress& address, const ListenOptions& options,
+                          StopSignals& stop, Listener& listener) {
+  Connection lilod(address);
+  lilod.subscribe();
+  const auto patience = options.timeout_s > 0.0
+                            ? Connection::Milliseconds(static_cast<int>(options.timeout_s * 1e3))
+                            : Connection::Milliseconds(std::chrono::hours(24 * 365));
+  while (!listener.finished() && !stop.raised()) {
+    const auto datagram = lilod.receive(patience, stop.descriptor());
+    if (!datagram) return;
+    listener.take(*datagram);
+  }
+}
+
+/// How and where it listened, for messages.
+std::string listen(const ListenOptions& options, StopSignals& stop, Listener& listener) {
+  LilodAddress lilod = options.lilod;
+  if (lilod.host.empty()) {
+    boost::asio::io_context io;
+    udp::socket socket = bind_socket(io, options.port);
+    if (socket.is_open()) {
+      listen_as_sink(socket, options, stop, listener);
+      return fmt::format("on UDP port {}", options.port);
+    }
+    lilod.host = LilodAddress().host;
+    fmt::print(stderr, "UDP port {} is another program's: subscribing to {} instead\n",
+               options.port, to_string(lilod));
+  }
+  listen_as_subscriber(lilod, options, stop, listener);
+  return "from " + to_string(lilod);
+}
+
+void run_listen(const ListenOptions& options) {
+  StopSignals stop;
+  Listener listener(options);
+  const std::string where = listen(options, stop, listener);
   const bool enough = options.count > 0 ? listener.finished() : listener.poses() > 0;
   if (!enough && !stop.raised()) {
-    throw std::runtime_error(fmt::format("nothing more arrived on UDP port {} for {:g} s: {}",
-                                         options.port, options.timeout_s, listener.summary()));
+    throw std::runtime_error(fmt::format("nothing more arrived {} for {:g} s: {}", where,
+                                         options.timeout_s, listener.summary()));
   }
   fmt::print(stderr, "{}\n", listener.summary());
 }
@@ -122,7 +162,13 @@ void run_listen(const ListenOptions& options) {
 void add_listen_command(CLI::App& app) {
   auto options = std::make_shared<ListenOptions>();
   CLI::App* sub = app.add_subcommand("listen", "Print the poses lilod sends");
-  sub->add_option("--port", options->port, "UDP port")->capture_default_str();
+  sub->add_option(
+         "--port", options->port,
+         "UDP port that lilod has as a sink; when another program has it, listen subscribes")
+      ->capture_default_str();
+  sub->add_option("--host", options->lilod.host, "Subscribe to the lilod on this computer instead");
+  sub->add_option("--request-port", options->lilod.port, "Its subscribe.port")
+      ->capture_default_str();
   sub->add_flag("--json", options->json, "Print the datagrams as they are, one a line");
   sub->add_option("--tum", options->tum, "Also write the poses to this TUM file");
   sub->add_option("--count", options->count, "End after so many poses")->check(above_zero());
