@@ -1,0 +1,104 @@
+#include "drivers/packet_source.hpp"
+#include "drivers/wire.hpp"
+#include "tools/clock.hpp"
+#include "tools/doctor/wire.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+namespace lilo::doctor {
+namespace {
+
+constexpr std::uint64_t kEnough = 100;
+
+/// Packets every card has received, from /proc/net/dev.
+std::map<std::string, std::uint64_t> received_by_card() {
+  std::map<std::string, std::uint64_t> out;
+  std::ifstream file("/proc/net/dev");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string::npos) continue;
+    const std::size_t name = line.find_first_not_of(' ');
+    std::istringstream numbers(line.substr(colon + 1));
+    std::uint64_t bytes = 0, packets = 0;
+    numbers >> bytes >> packets;
+    out[line.substr(name, colon - name)] = packets;
+  }
+  return out;
+}
+
+void count(const PacketView& packet, std::uint16_t position_port, Wire& wire) {
+  Sender& sender = wire.senders[packet.source_ipv4];
+  const std::string model = model_of(packet.payload.data(), packet.payload.size());
+  if (!model.empty()) {
+    ++sender.data;
+    sender.model = model;
+  } else if (packet.destination_port == position_port) {
+    ++sender.position;
+  } else {
+    ++sender.other;
+  }
+}
+
+bool enough(const Wire& wire) {
+  return std::any_of(wire.senders.begin(), wire.senders.end(),
+                     [](const auto& each) { return each.second.data >= kEnough; });
+}
+
+void listen(UdpSource& source, const UdpConfig& config, double seconds, Wire& wire) {
+  constexpr std::chrono::milliseconds kLook{100};
+  const std::int64_t start_ns = monotonic_ns();
+  const auto elapsed_s = [&] { return static_cast<double>(monotonic_ns() - start_ns) * 1e-9; };
+  PacketView packet;
+  // Half a second at least: a second sensor shows itself in that.
+  while (elapsed_s() < seconds && (elapsed_s() < 0.5 || !enough(wire))) {
+    if (source.read(packet, kLook) == ReadResult::packet) count(packet, config.position_port, wire);
+  }
+  wire.seconds = elapsed_s();
+}
+
+}  // namespace
+
+// VLP-16 manual 9.3.1.6: return mode, then product. An HDL-64E has its status bytes there instead,
+// and blocks of its lower lasers.
+std::string model_of(const std::byte* payload, std::size_t bytes) {
+  constexpr std::array<std::pair<std::uint8_t, const char*>, 5> kProducts{{{0x21, "HDL-32E"},
+                                                                           {0x22, "VLP-16"},
+                                                                           {0x24, "Puck Hi-Res"},
+                                                                           {0x28, "VLP-32C"},
+                                                                           {0xA1, "VLS-128"}}};
+  if (bytes != wire::kDataPacketBytes || wire::block_flag(payload, 0) != wire::kUpperFlag)
+    return {};
+  if (wire::block_flag(payload, 1) == wire::kLowerFlag) return "HDL-64E";
+  const std::uint8_t product = wire::u8(payload + wire::kTailOffset + 1);
+  for (const auto& [number, name] : kProducts) {
+    if (number == product) return name;
+  }
+  return fmt::format("unknown product 0x{:02X}", product);
+}
+
+Wire watch_wire(const UdpConfig& config, double seconds) {
+  Wire wire;
+  UdpConfig everybody = config;
+  everybody.sensor_address.clear();
+  const auto before = received_by_card();
+  try {
+    const std::unique_ptr<UdpSource> source = open_udp(everybody);
+    listen(*source, config, seconds, wire);
+  } catch (const DriverError& error) {
+    wire.trouble = error.what();
+    wire.port_taken = wire.trouble.find("in use") != std::string::npos;
+  }
+  for (const auto& [card, packets] : received_by_card()) {
+    const auto old = before.find(card);
+    wire.card_packets[card] = packets - (old == before.end() ? 0 : old->second);
+  }
+  return wire;
+}
+
+}  // namespace lilo::doctor
