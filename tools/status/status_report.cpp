@@ -125,7 +125,7 @@ StatusRow quantiles_row(const char* label, const json& ms) {
 StatusRow sent_row(const json& health) {
   const std::uint64_t errors = count(health, "send_errors");
   return {"Sent",
-          fmt::format("{} poses, {} held back, {} send errors, {} subscribers",
+          fmt::format("{} poses, {} held back, {} send errors, subscribers: {}",
                       count(health, "poses_sent"), count(health, "poses_not_sent"), errors,
                       count(health, "clients")),
           colour_of_count(errors)};

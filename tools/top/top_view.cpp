@@ -19,6 +19,15 @@ constexpr std::size_t kLabelColumns = 18;
 
 std::string time_of_day(std::int64_t utc_ns) { return time_words(utc_ns).substr(11, 8); }
 
+/// What keeps health from being good, but for the status, which is told for itself.
+json complaints_of(const json& health) {
+  json out = json::array();
+  for (const json& complaint : health.value("complaints", json::array())) {
+    if (complaint != "lost" && complaint != "degraded") out.push_back(complaint);
+  }
+  return out;
+}
+
 /// Rows are ASCII but for the bars, which are made to measure.
 StatusRow fitted(StatusRow row, std::size_t columns) {
   row.text.resize(std::min(row.text.size(), columns - std::min(columns, kLabelColumns)));
@@ -60,7 +69,7 @@ void TopView::silence(double seconds, std::int64_t now_ns) {
 
 void TopView::take_health(const json& message, std::int64_t now_ns) {
   report_.health = message;
-  const json now = message.at("health").value("complaints", json::array());
+  const json now = complaints_of(message.at("health"));
   const auto has = [](const json& list, const json& item) {
     return std::find(list.begin(), list.end(), item) != list.end();
   };
@@ -119,11 +128,10 @@ std::string TopView::text(std::size_t rows, std::size_t columns, const Paint& pa
   lines.push_back({"Last latencies", bars(latencies_ms_, width)});
   lines.push_back({"Events (UTC)", "", Colour::none});
   for (const StatusRow& event : events_) lines.push_back(fitted(event, columns));
-  const StatusRow footer{"q, Ctrl-C", "ends"};
   lines.resize(std::min(lines.size(), rows - std::min<std::size_t>(rows, 1)));
   std::string out;
   for (const StatusRow& row : lines) out += to_text(row, paint);
-  return out + paint(Colour::faint, fmt::format("{:<16}: {}\n", footer.label, footer.text));
+  return out + paint(Colour::faint, "q, Ctrl-C       : ends") + "\n";
 }
 
 }  // namespace lilo
