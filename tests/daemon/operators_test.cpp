@@ -187,7 +187,7 @@ TEST_F(Operator, RecordsTheSensorsPacketsWithoutTheirPort) {
       original.read(expected, milliseconds(0));
     }
   }
-  EXPECT_GT(packets, 500U);
+  EXPECT_GT(packets, 100U);
   EXPECT_EQ(found, packets);
 }
 
@@ -213,9 +213,12 @@ TEST_F(Operator, ResetBeginsASessionWhereItWasTold) {
   const std::string before = json::parse(run({"status", "--json"}).output)["session"];
   const Finished reset = run({"reset", "--pose", "10", "-20", "3"});
   ASSERT_EQ(reset.exit_code, 0) << reset.error;
+  json after;
+  for (int k = 0; k < 100 && (after.is_null() || after["session"] == before); ++k)
+    after = json::parse(run({"status", "--json"}).output);
+  ASSERT_NE(after["session"], before);
   ASSERT_TRUE(becomes_good());
-  const json after = json::parse(run({"status", "--json"}).output);
-  EXPECT_NE(after["session"], before);
+  after = json::parse(run({"status", "--json"}).output);
   EXPECT_NEAR(after["pose"]["position"]["y"].get<double>(), -20.0, 1.0);
 }
 
@@ -398,7 +401,7 @@ TEST_F(Operator, TheRos2BridgePublishesWhatTheDaemonSends) {
       "import sys; sys.path[:0] = ['" LILO_ROS2_DIR "', '" LILO_CLIENTS_DIR "', '" LILO_CLIENTS_DIR
       "/ros2/lilo_ros']\n"
       "import stand_ins; stand_ins.PRINT = True; stand_ins.PARAMETERS['port'] = " +
-      std::to_string(lilod.server_port()) +
+      std::to_string(lilod.server_port()) + "\nstand_ins.PARAMETERS['continuous'] = False" +
       "\nfrom lilo_ros import bridge; bridge.Bridge().run()\n";
   ChildProcess bridge({python, "-B", "-c", program});
   std::map<std::string, json> sent;  // by stamp
