@@ -1,7 +1,7 @@
 #include "tools/reset/reset_request.hpp"
 #include "tools/status/status_report.hpp"
 #include "tools/status/status_words.hpp"
-#include "tools/top/top_view.hpp"
+#include "tools/top/live_view.hpp"
 
 #include <gtest/gtest.h>
 
@@ -102,7 +102,7 @@ TEST(Status, DurationsAreForPeople) {
 std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
 TEST(Top, TellsWhatChanged) {
-  TopView view("robot:9871", "lilod 0.1.0");
+  LiveView view("robot:9871", "lilod 0.1.0");
   view.take(health("tracking"), kNoon_ns);
   view.take(health("degraded", {"packets lost"}), kNoon_ns + 1'000'000'000);
   view.take(health("tracking"), kNoon_ns + 2'000'000'000);
@@ -118,7 +118,7 @@ TEST(Top, TellsWhatChanged) {
 
 // A window of any size: never more lines, never longer ones.
 TEST(Top, FitsTheWindow) {
-  TopView view("robot:9871", "lilod 0.1.0");
+  LiveView view("robot:9871", "lilod 0.1.0");
   for (int k = 0; k < 50; ++k) {
     view.take(health(k % 2 == 0 ? "tracking" : "lost"), kNoon_ns + k);
     view.take(pose(), kNoon_ns + k);

@@ -4,7 +4,7 @@
 #include "tools/connection/address_options.hpp"
 #include "tools/stop_signals.hpp"
 #include "tools/terminal/screen.hpp"
-#include "tools/top/top_view.hpp"
+#include "tools/top/live_view.hpp"
 
 #include <memory>
 #include <unistd.h>
@@ -17,7 +17,7 @@ constexpr std::int64_t kShortest_ns = 50'000'000;  // between two pictures
 
 /// Until q or Ctrl-C. A daemon that goes away is waited for.
 void watch(Connection& lilod, StopSignals& stop) {
-  TopView view(to_string(lilod.address()), lilod.software());
+  LiveView view(to_string(lilod.address()), lilod.software());
   const Paint paint(STDOUT_FILENO);
   const Screen screen;
   std::int64_t heard_ns = monotonic_ns(), drawn_ns = 0;

@@ -11,9 +11,9 @@ namespace lilo {
 
 /// What `lilo top` shows: the state, how late the last poses were, and what changed since it
 /// looks.
-class TopView {
+class LiveView {
  public:
-  explicit TopView(std::string address, std::string software);
+  explicit LiveView(std::string address, std::string software);
 
   /// A datagram of the daemon, and the time it came (UTC).
   void take(const nlohmann::json& message, std::int64_t now_ns);

@@ -1,4 +1,4 @@
-#include "tools/top/top_view.hpp"
+#include "tools/top/live_view.hpp"
 
 #include "tools/status/status_words.hpp"
 
@@ -49,10 +49,10 @@ std::string bars(const std::deque<double>& values, std::size_t columns) {
   return text;
 }
 
-TopView::TopView(std::string address, std::string software)
+LiveView::LiveView(std::string address, std::string software)
     : report_{.address = std::move(address), .software = std::move(software)} {}
 
-void TopView::take(const json& message, std::int64_t now_ns) {
+void LiveView::take(const json& message, std::int64_t now_ns) {
   if (silence_noted_) note(now_ns, Colour::good, "lilod answers again");
   silence_noted_ = false;
   silent_s_ = 0.0;
@@ -60,14 +60,14 @@ void TopView::take(const json& message, std::int64_t now_ns) {
   if (message.contains("pose")) take_pose(message, now_ns);
 }
 
-void TopView::silence(double seconds, std::int64_t now_ns) {
+void LiveView::silence(double seconds, std::int64_t now_ns) {
   if (seconds < kSilentAfterS) return;
   silent_s_ = seconds;
   if (!silence_noted_) note(now_ns, Colour::bad, "no word from lilod");
   silence_noted_ = true;
 }
 
-void TopView::take_health(const json& message, std::int64_t now_ns) {
+void LiveView::take_health(const json& message, std::int64_t now_ns) {
   report_.health = message;
   const json now = complaints_of(message.at("health"));
   const auto has = [](const json& list, const json& item) {
@@ -85,7 +85,7 @@ void TopView::take_health(const json& message, std::int64_t now_ns) {
   note_status(message.at("health").value("status", ""), now_ns);
 }
 
-void TopView::take_pose(const json& message, std::int64_t now_ns) {
+void LiveView::take_pose(const json& message, std::int64_t now_ns) {
   report_.pose = message;
   const json& pose = message.at("pose");
   latencies_ms_.push_back(pose.value("latency_ms", 0.0));
@@ -94,24 +94,24 @@ void TopView::take_pose(const json& message, std::int64_t now_ns) {
   note_status(pose.value("status", ""), now_ns);
 }
 
-void TopView::note_session(const std::string& session, std::int64_t now_ns) {
+void LiveView::note_session(const std::string& session, std::int64_t now_ns) {
   if (session == session_) return;
   note(now_ns, Colour::warning, "session " + session + (session_.empty() ? "" : ": a new origin"));
   session_ = session;
 }
 
-void TopView::note_status(const std::string& status, std::int64_t now_ns) {
+void LiveView::note_status(const std::string& status, std::int64_t now_ns) {
   if (status == status_) return;
   note(now_ns, colour_of_status(status), status);
   status_ = status;
 }
 
-void TopView::note(std::int64_t now_ns, Colour colour, const std::string& what) {
+void LiveView::note(std::int64_t now_ns, Colour colour, const std::string& what) {
   events_.push_front({time_of_day(now_ns), what, colour});
   if (events_.size() > kEvents) events_.pop_back();
 }
 
-std::string TopView::text(std::size_t rows, std::size_t columns, const Paint& paint) const {
+std::string LiveView::text(std::size_t rows, std::size_t columns, const Paint& paint) const {
   std::vector<StatusRow> lines;
   if (silent_s_ > 0.0) {
     lines.push_back(
