@@ -1,4 +1,3 @@
-#include "drivers/packet_source.hpp"
 #include "tests/daemon/conversation.hpp"
 
 #include <arpa/inet.h>
@@ -156,55 +155,6 @@ TEST_F(Operator, RecordEndsWithCtrlC) {
   ASSERT_GT(bytes.size(), 16U);
   EXPECT_EQ(bytes.substr(0, 8), "\x89MCAP0\r\n");
   EXPECT_EQ(bytes.substr(bytes.size() - 8), "\x89MCAP0\r\n");
-}
-
-// The packets as the daemon got them, bit by bit, though it had the port to itself.
-TEST_F(Operator, RecordsTheSensorsPacketsWithoutTheirPort) {
-  const std::string path = new_path("c.jsonl");
-  const std::string pcap = std::filesystem::path(path).replace_extension(".pcap").string();
-  ChildProcess recorder(words({"record", path, "--packets"}));
-  {
-    const Turning turning(lilod);
-    std::this_thread::sleep_for(seconds(2));
-    recorder.signal(SIGINT);
-    ASSERT_EQ(recorder.wait(seconds(10)), 0) << recorder.standard_error();
-  }
-  EXPECT_NE(recorder.standard_output().find(" packets, 0 missed"), std::string::npos)
-      << recorder.standard_output();
-  const auto source = open_pcap(pcap);
-  RoundRoomSource original(1'000'000);
-  PacketView packet, expected;
-  std::size_t packets = 0, found = 0;
-  original.read(expected, milliseconds(0));
-  while (source->read(packet, milliseconds(0)) == ReadResult::packet) {
-    ++packets;
-    EXPECT_EQ(packet.destination_port, lilod.data_port());
-    EXPECT_EQ(packet.source_ipv4, 0x7F000001U);
-    for (int ahead = 0; ahead < 20000 && found < packets; ++ahead) {
-      if (std::equal(packet.payload.begin(), packet.payload.end(), expected.payload.begin(),
-                     expected.payload.end()))
-        ++found;
-      original.read(expected, milliseconds(0));
-    }
-  }
-  EXPECT_GT(packets, 100U);
-  EXPECT_EQ(found, packets);
-}
-
-// As long as nobody subscribes to packets, subscribers of messages see none.
-TEST_F(Operator, PacketsGoOnlyToThoseWhoAsked) {
-  UdpSocket messages, packets;
-  ask(messages, lilod, R"({"subscribe":{}})", "hello");
-  ask(packets, lilod, R"({"subscribe":{"packets":true}})", "hello");
-  Sensor().turn(lilod, 2.0);
-  std::size_t raw = 0;
-  while (const auto datagram = packets.receive(milliseconds(300))) {
-    ASSERT_EQ(datagram->substr(0, 4), "LPK1");
-    EXPECT_EQ(datagram->size(), 24U + 1206U);
-    ++raw;
-  }
-  EXPECT_GT(raw, 100U);
-  EXPECT_TRUE(next_of_kind(messages, "health"));  // which holds every datagram against the schema
 }
 
 TEST_F(Operator, ResetBeginsASessionWhereItWasTold) {

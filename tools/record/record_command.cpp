@@ -3,7 +3,6 @@
 #include "tools/cli.hpp"
 #include "tools/clock.hpp"
 #include "tools/connection/address_options.hpp"
-#include "tools/record/packet_recorder.hpp"
 #include "tools/record/recording.hpp"
 #include "tools/stop_signals.hpp"
 #include "tools/terminal/progress_bar.hpp"
@@ -13,7 +12,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 
 namespace lilo {
@@ -25,13 +23,7 @@ struct RecordOptions {
   std::uint64_t count = 0;  // 0: no end
   double duration_s = 0.0;  // 0: no end
   bool force = false;
-  bool packets = false;
 };
-
-/// Beside the poses: drive.mcap, drive.pcap.
-std::string packets_file(const RecordOptions& options) {
-  return std::filesystem::path(options.file).replace_extension(".pcap").string();
-}
 
 /// In [0, 1]; 0 while the end is not known.
 double part_done(const RecordOptions& options, std::uint64_t poses, double elapsed_s) {
@@ -61,22 +53,13 @@ void record(Connection& lilod, const RecordOptions& options, StopSignals& stop, 
   }
 }
 
-void finish(PacketRecorder& packets, const std::string& file) {
-  packets.finish();
-  fmt::print("{}: {} packets, {} missed\n", file, packets.packets(), packets.missed());
-}
-
 void run_record(const RecordOptions& options) {
   check_file(options.file, options);
-  if (options.packets) check_file(packets_file(options), options);
-  StopSignals stop;  // before the thread
+  StopSignals stop;
   Connection lilod(options.address);
   Recording out(options.file);
-  std::optional<PacketRecorder> packets;
-  if (options.packets) packets.emplace(options.address, packets_file(options));
   record(lilod, options, stop, out);
   out.finish();
-  if (packets) finish(*packets, packets_file(options));
   if (out.counts().poses == 0) {
     throw std::runtime_error(fmt::format("{}: no pose came from {}: lilo status says why",
                                          options.file, to_string(options.address)));
@@ -98,8 +81,6 @@ void add_record_command(CLI::App& app) {
       ->check(above_zero());
   sub->add_option("--duration-s", options->duration_s, "End after so many seconds")
       ->check(above_zero());
-  sub->add_flag("--packets", options->packets,
-                "Also the sensor's packets, as lilod got them, into a .pcap beside FILE");
   sub->add_flag("--force", options->force, "Replace what is there");
   sub->callback([options] { run_record(*options); });
 }
