@@ -15,7 +15,7 @@ CalibrationKeeper::CalibrationKeeper(boost::asio::io_context& io, const Receiver
 void CalibrationKeeper::look() {
   const std::uint64_t read = receiver_.calibrations_read();
   if (directory_.empty() || read == kept_ || saver_.busy()) return;
-  Hdl64eCalibration calibration;
+  Calibration calibration;
   if (!receiver_.calibration().load(calibration)) return;  // overtaken: in a second
   kept_ = read;
   saver_.write(

@@ -45,7 +45,7 @@ void Receiver::share_state() {
 }
 
 void Receiver::share_calibration(const SensorStatus& status) {
-  const Hdl64eCalibration* const table = builder_.calibration();
+  const Calibration* const table = builder_.calibration();
   if (status.calibration != CalibrationOrigin::packets || table == nullptr ||
       *table == last_calibration_)
     return;

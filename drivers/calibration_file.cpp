@@ -1,10 +1,9 @@
 #include "drivers/calibration_xml.hpp"
-#include "drivers/hdl64e_calibration.hpp"
+#include "drivers/calibration.hpp"
 #include "drivers/packet_source.hpp"
 
 #include <yaml-cpp/yaml.h>
 
-#include <bitset>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -62,26 +61,29 @@ LaserCorrection read_laser(const std::string& path, const YAML::Node& node) {
   return laser;
 }
 
-Hdl64eCalibration read_yaml(const std::string& path, const std::string& text) {
+Calibration read_yaml(const std::string& path, const std::string& text) {
   const YAML::Node root = YAML::Load(text);
   if (!root.IsMap() || !root["lasers"].IsSequence())
     throw DriverError(path + ": expected a list \"lasers\", found none");
-  Hdl64eCalibration calibration;
+  Calibration calibration;
   calibration.distance_step_m =
       read(path, root, "distance_resolution", 0.002, "a number of metres");
-  std::bitset<Hdl64eCalibration::kLasers> seen;
+  const std::size_t count = root["lasers"].size();
+  check_laser_count(path, count);
+  calibration.lasers.resize(count);
+  std::vector<bool> seen(count);
   for (const YAML::Node& node : root["lasers"]) {
     if (!node.IsMap()) refuse(path, node.Mark(), "lasers: expected a map per laser");
     const int id = read(path, node, "laser_id", -1, "a whole number");
-    if (id < 0 || id >= static_cast<int>(seen.size()))
-      refuse(path, node.Mark(), "laser_id: expected 0 to 63, found " + std::to_string(id));
+    if (id < 0 || id >= static_cast<int>(count))
+      refuse(path, node.Mark(),
+             "laser_id: expected 0 to " + std::to_string(count - 1) + ", found " +
+                 std::to_string(id));
     const auto i = static_cast<std::size_t>(id);
     if (seen[i]) refuse(path, node.Mark(), "laser_id: " + std::to_string(id) + " stands twice");
-    seen.set(i);
+    seen[i] = true;
     calibration.lasers[i] = read_laser(path, node);
   }
-  if (!seen.all())
-    throw DriverError(path + ": expected 64 lasers, found " + std::to_string(seen.count()));
   return calibration;
 }
 
@@ -98,11 +100,16 @@ std::string read_text(const std::string& path) {
 
 }  // namespace
 
-Hdl64eCalibration parse_calibration(const std::string& name, const std::string& text) {
+void check_laser_count(const std::string& name, std::size_t count) {
+  if (count != 16 && count != 32 && count != 64 && count != 128)
+    throw DriverError(name + ": expected 16, 32, 64 or 128 lasers, found " + std::to_string(count));
+}
+
+Calibration parse_calibration(const std::string& name, const std::string& text) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (begin == std::string::npos)
     throw DriverError(name + ": expected a calibration (db.xml or YAML), found an empty file");
-  Hdl64eCalibration calibration;
+  Calibration calibration;
   try {
     calibration = text[begin] == '<' ? read_calibration_xml(name, text) : read_yaml(name, text);
   } catch (const YAML::Exception& e) {
@@ -110,11 +117,11 @@ Hdl64eCalibration parse_calibration(const std::string& name, const std::string& 
                       ": expected a calibration in YAML: " + e.msg);
   }
   if (const std::string problem = implausible(calibration); !problem.empty())
-    throw DriverError(name + ": no HDL-64E has this calibration: " + problem);
+    throw DriverError(name + ": no sensor has this calibration: " + problem);
   return calibration;
 }
 
-Hdl64eCalibration load_calibration(const std::string& path) {
+Calibration load_calibration(const std::string& path) {
   return parse_calibration(path, read_text(path));
 }
 
@@ -122,7 +129,7 @@ std::string stored_calibration_path(const std::string& state_directory) {
   return state_directory + "/hdl64e_calibration.yaml";
 }
 
-std::string calibration_yaml(const Hdl64eCalibration& calibration) {
+std::string calibration_yaml(const Calibration& calibration) {
   YAML::Emitter out;
   out.SetDoublePrecision(12);
   out << YAML::BeginMap << YAML::Key << "lasers" << YAML::Value << YAML::BeginSeq;
@@ -141,7 +148,7 @@ std::string calibration_yaml(const Hdl64eCalibration& calibration) {
   return std::string(out.c_str()) + '\n';
 }
 
-bool store_calibration(const std::string& path, const Hdl64eCalibration& calibration) {
+bool store_calibration(const std::string& path, const Calibration& calibration) {
   const std::string temporary = path + ".new";
   {
     std::ofstream file(temporary, std::ios::trunc);

@@ -1,12 +1,12 @@
 #include "drivers/calibration_xml.hpp"
 
+#include "core/scan.hpp"
 #include "drivers/packet_source.hpp"
 
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 
 #include <algorithm>
-#include <bitset>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -56,7 +56,7 @@ LaserCorrection read_laser(const std::string& name, const ptree& px, int id) {
 
 // <minIntensity_><count>64</count><item>30</item>...: by laser.
 void read_intensities(const ptree& db, const char* list, int LaserCorrection::*limit,
-                      Hdl64eCalibration& calibration) {
+                      Calibration& calibration) {
   const auto items = db.get_child_optional(list);
   if (!items) return;
   std::size_t i = 0;
@@ -98,25 +98,27 @@ ptree parse(const std::string& name, const std::string& text) {
 
 }  // namespace
 
-Hdl64eCalibration read_calibration_xml(const std::string& name, const std::string& text) {
+Calibration read_calibration_xml(const std::string& name, const std::string& text) {
   const ptree root = parse(name, text);
   const auto db = root.get_child_optional("boost_serialization.DB");
   const auto points = db ? db->get_child_optional("points_") : boost::none;
   if (!points) throw DriverError(name + ": expected boost_serialization/DB/points_, found none");
-  Hdl64eCalibration calibration;
+  Calibration calibration;
   calibration.distance_step_m = db->get("distLSB_", 0.2) * kMetresPerCm;
-  std::bitset<Hdl64eCalibration::kLasers> seen;
+  std::vector<bool> seen(kMaxRings);
   for (const auto& [tag, item] : *points) {
     const auto px = tag == "item" ? item.get_child_optional("px") : boost::none;
     if (!px) continue;
     const int id = px->get("id_", -1);
-    if (id < 0 || id >= static_cast<int>(seen.size()))
-      throw DriverError(name + ": id_: expected 0 to 63, found \"" + px->get("id_", "") + "\"");
-    seen.set(static_cast<std::size_t>(id));
-    calibration.lasers[static_cast<std::size_t>(id)] = read_laser(name, *px, id);
+    if (id < 0 || id >= kMaxRings)
+      throw DriverError(name + ": id_: expected 0 to 127, found \"" + px->get("id_", "") + "\"");
+    const auto i = static_cast<std::size_t>(id);
+    if (calibration.lasers.size() <= i) calibration.lasers.resize(i + 1);
+    seen[i] = true;
+    calibration.lasers[i] = read_laser(name, *px, id);
   }
-  if (!seen.all())
-    throw DriverError(name + ": expected 64 lasers, found " + std::to_string(seen.count()));
+  const auto count = static_cast<std::size_t>(std::count(seen.begin(), seen.end(), true));
+  check_laser_count(name, count == calibration.lasers.size() ? count : 0);
   read_intensities(*db, "minIntensity_", &LaserCorrection::min_intensity, calibration);
   read_intensities(*db, "maxIntensity_", &LaserCorrection::max_intensity, calibration);
   return calibration;

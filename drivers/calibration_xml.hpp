@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/hdl64e_calibration.hpp"
+#include "drivers/calibration.hpp"
 
 #include <string>
 
@@ -8,9 +8,12 @@ namespace lilo {
 
 /// Velodyne's db.xml, a boost::serialization archive: degrees and centimetres. Throws DriverError;
 /// `name` is what the message calls the file.
-Hdl64eCalibration read_calibration_xml(const std::string& name, const std::string& text);
+Calibration read_calibration_xml(const std::string& name, const std::string& text);
+
+/// Throws DriverError unless a sensor has so many lasers.
+void check_laser_count(const std::string& name, std::size_t count);
 
 /// Either form, from memory; checked for plausibility. Throws DriverError.
-Hdl64eCalibration parse_calibration(const std::string& name, const std::string& text);
+Calibration parse_calibration(const std::string& name, const std::string& text);
 
 }  // namespace lilo

@@ -19,6 +19,7 @@ struct Firing {
   std::array<float, kLasers> x_m, y_m, z_m, azimuth_rad;
   std::array<std::int32_t, kLasers> ring_and_intensity;  ///< from the lowest byte on
 
+  [[nodiscard]] static constexpr std::size_t size() { return kLasers; }
   [[nodiscard]] int intensity(std::size_t laser) const { return ring_and_intensity[laser] >> 8; }
 
   /// Into its place, member by member: a whole Return would be built elsewhere and copied.
@@ -47,13 +48,12 @@ std::array<std::int32_t, kLasers> channels(const std::byte* first) {
 }
 
 /// Returns of a column, written at the end of a scan and counted only if wanted, without a branch.
-/// The scan must have room for all of them, or it allocates.
-template <std::size_t kMost>
+/// The scan must have room for `most`, or it allocates.
 class Kept {
  public:
-  explicit Kept(Returns& out) : out_(out) {
+  Kept(Returns& out, std::size_t most) : out_(out) {
     const std::size_t before = out.size();
-    out.resize(before + kMost);
+    out.resize(before + most);
     next_ = out.data() + before;
   }
   Kept(const Kept&) = delete;

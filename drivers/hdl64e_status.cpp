@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::string_view kTimeTypes = "HMSDNYGTV";
 constexpr std::string_view kMarker = "UNIT#";
-constexpr std::size_t kHeaderBytes = 7, kRecordBytes = 28, kLaserBytes = 21;
+constexpr std::size_t kHeaderBytes = 7, kRecordBytes = 28, kLaserBytes = 21,
+                      kLasers = 64;
 constexpr std::uint16_t kS2Length = Hdl64eStatus::kTableBytes;
 
 using Record = const std::uint8_t*;
@@ -144,7 +145,8 @@ Hdl64eStatus::Table Hdl64eStatus::judge(bool has_checksum) {
   const auto bytes = table_bytes();
   std::uint16_t crc = 0;
   bool ids_hold = true;
-  for (std::size_t i = 0; i < Hdl64eCalibration::kLasers; ++i) {
+  calibration_.lasers.resize(kLasers);
+  for (std::size_t i = 0; i < kLasers; ++i) {
     const Record record = bytes.data() + kHeaderBytes + i * kRecordBytes;
     crc = crc16(record + 1, kLaserBytes - 1, crc);
     ids_hold = ids_hold && record[0] == i;

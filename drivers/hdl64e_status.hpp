@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/hdl64e_calibration.hpp"
+#include "drivers/calibration.hpp"
 
 #include <array>
 #include <bitset>
@@ -34,7 +34,7 @@ class Hdl64eStatus {
   void restart();
 
   /// The table, once see() has said that it is whole.
-  [[nodiscard]] const Hdl64eCalibration& calibration() const { return calibration_; }
+  [[nodiscard]] const Calibration& calibration() const { return calibration_; }
 
   /// UTC of the second named by the cycle that just ended, when it was whole and the sensor has
   /// GPS time and pulse ('A'). Given once.
@@ -65,7 +65,7 @@ class Hdl64eStatus {
   std::bitset<kLap> seen_, seen_twice_;
   std::size_t seen_count_ = 0, seen_twice_count_ = 0;  // bits set: asked with every packet
   bool judged_ = false;
-  Hdl64eCalibration calibration_;
+  Calibration calibration_;
 
   std::array<std::uint8_t, 7> time_{};  // H M S D N Y G
   std::size_t time_count_ = 0;

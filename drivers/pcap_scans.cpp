@@ -1,6 +1,6 @@
 #include "drivers/pcap_scans.hpp"
 
-#include "drivers/hdl64e_calibration.hpp"
+#include "drivers/calibration.hpp"
 #include "drivers/packet_source.hpp"
 
 #include <utility>
@@ -31,7 +31,8 @@ void read_table_ahead(const std::string& path, const SensorConfig& config, ScanB
   PacketView packet;
   while (packets->read(packet, std::chrono::milliseconds(0)) == ReadResult::packet) {
     ahead.feed(packet);
-    const bool useless = ahead.status().model == SensorModel::vlp16;
+    const SensorModel model = ahead.status().model;
+    const bool useless = model != SensorModel::automatic && model != SensorModel::hdl64e;
     if (useless || ahead.counts().data_packets > kMaxPacketsAhead) return;
     if (ahead.calibration() == nullptr) continue;
     builder.use_calibration(*ahead.calibration());

@@ -1,14 +1,17 @@
 #include "drivers/scan_builder.hpp"
 
 #include "drivers/hdl64e_unit.hpp"
+#include "drivers/packet_decoder.hpp"
 #include "drivers/packet_sequence.hpp"
 #include "drivers/position_packet.hpp"
 #include "drivers/scan_assembler.hpp"
 #include "drivers/sensor_clock.hpp"
-#include "drivers/vlp16_decoder.hpp"
+#include "drivers/sensor_identity.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 
 namespace lilo {
 namespace {
@@ -16,40 +19,66 @@ namespace {
 // A sensor that was silent for so long may be replaced by another one on the same network.
 constexpr std::int64_t kReplaceableNs = 2'000'000'000;
 
+// Throws where the configured sensor cannot have this calibration.
+std::optional<Calibration> configured_calibration(const SensorConfig& config) {
+  if (config.calibration_file.empty()) return std::nullopt;
+  Calibration calibration = load_calibration(config.calibration_file);
+  const SensorTable* table = find_sensor(config.model);
+  const auto count = static_cast<int>(calibration.lasers.size());
+  if (table != nullptr && table->lasers != count)
+    throw DriverError(config.calibration_file + ": expected the " + std::to_string(table->lasers) +
+                      " lasers of a " + table->name + ", found " + std::to_string(count));
+  return calibration;
+}
+
 }  // namespace
 
 struct ScanBuilder::Impl {
   Impl(const SensorConfig& config, Scan& target, ScanSink& sink)
       : model(config.model),
+        ignore_product(config.ignore_product_byte),
         position_port(config.position_port),
-        vlp16(config, azimuths),
-        hdl64e(config, azimuths),
+        file(configured_calibration(config)),
+        decoder(config, azimuths),
+        hdl64e(config, file_of(64), decoder),
         assembler(config, target, sink) {}
+
+  // The configured calibration, if it is of so many lasers.
+  [[nodiscard]] const Calibration* file_of(int lasers) const {
+    return file && static_cast<int>(file->lasers.size()) == lasers ? &*file : nullptr;
+  }
 
   void feed(const PacketView& packet);
   bool is_followed(const PacketView& packet);
   bool feed_data(const PacketView& packet);
   bool feed_position(const PacketView& packet);
-  bool feed_vlp16(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
+  [[nodiscard]] const SensorTable* accept(const SensorIdentity& identity,
+                                          std::int64_t received_ns) const;
+  void refuse(const SensorIdentity& identity);
+  void follow(const SensorTable& table);
+  bool feed_vlp(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
   bool feed_hdl64e(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
-  PacketSequence::Verdict sort(const PacketDecoder& decoder, std::uint32_t stamp_us,
-                               std::int64_t received_ns, std::int64_t& line_ns);
+  PacketSequence::Verdict sort(std::uint32_t stamp_us, std::int64_t received_ns,
+                               std::int64_t& line_ns);
   void forgive_blind();
-  void assemble(const PacketDecoder& decoder, std::int64_t line_ns,
-                PacketSequence::Verdict verdict);
+  void assemble(std::int64_t line_ns, PacketSequence::Verdict verdict);
 
   SensorModel model;
+  bool ignore_product;
   std::uint16_t position_port;
   SensorModel seen_model = SensorModel::automatic;
+  std::optional<Calibration> file;
   AzimuthTable azimuths;
-  Vlp16Decoder vlp16;
+  PacketDecoder decoder;
   Hdl64eUnit hdl64e;
   SensorClock clock;
   PacketSequence sequence;
   ScanAssembler assembler;
   DriverCounts counts;
+  RefusedSensor refused;
   std::uint32_t sensor_ipv4 = 0;
   std::int64_t sensor_heard_ns = 0;
+  std::int64_t model_heard_ns = 0;
 };
 
 ScanBuilder::ScanBuilder(const SensorConfig& config, Scan& target, ScanSink& sink)
@@ -58,9 +87,9 @@ ScanBuilder::~ScanBuilder() = default;
 
 void ScanBuilder::feed(const PacketView& packet) { impl_->feed(packet); }
 const DriverCounts& ScanBuilder::counts() const { return impl_->counts; }
-const Hdl64eCalibration* ScanBuilder::calibration() const { return impl_->hdl64e.calibration(); }
+const Calibration* ScanBuilder::calibration() const { return impl_->hdl64e.calibration(); }
 
-void ScanBuilder::use_calibration(const Hdl64eCalibration& calibration) {
+void ScanBuilder::use_calibration(const Calibration& calibration) {
   impl_->assembler.interrupt(impl_->clock);
   impl_->hdl64e.use_calibration(calibration, CalibrationOrigin::packets);
 }
@@ -69,20 +98,17 @@ SensorStatus ScanBuilder::status() const {
   const Impl& impl = *impl_;
   SensorStatus status{
       .model = impl.seen_model, .clock = impl.clock.source(), .sensor_ipv4 = impl.sensor_ipv4};
-  const PacketDecoder* decoder = nullptr;
-  if (impl.seen_model == SensorModel::vlp16) {
-    decoder = &impl.vlp16;
-    status.product_id = impl.vlp16.product_id();
-    status.return_mode = impl.vlp16.mode();
-    status.packet_period_us = impl.vlp16.packet_period_ns() * 1e-3;
-    status.calibration = CalibrationOrigin::built_in;
-  } else if (impl.seen_model == SensorModel::hdl64e) {
-    decoder = &impl.hdl64e.decoder();
-    impl.hdl64e.describe(status);
-  }
+  status.refused = impl.refused;
+  if (impl.seen_model == SensorModel::automatic) return status;
+  const SensorTable& table = impl.decoder.table();
+  status.product_id = table.product;
+  status.return_mode = impl.decoder.mode();
+  status.packet_period_us = impl.decoder.packet_period_ns() * 1e-3;
+  status.calibration = impl.file_of(table.lasers) != nullptr ? CalibrationOrigin::file
+                                                              : CalibrationOrigin::built_in;
+  if (impl.seen_model == SensorModel::hdl64e) impl.hdl64e.describe(status);
   impl.assembler.describe(status);
-  if (decoder != nullptr)
-    status.rpm = std::abs(decoder->ticks_per_ns()) * 60e9 / wire::kTicksPerTurn;
+  status.rpm = std::abs(impl.decoder.ticks_per_ns()) * 60e9 / wire::kTicksPerTurn;
   return status;
 }
 
@@ -124,29 +150,69 @@ bool ScanBuilder::Impl::feed_data(const PacketView& packet) {
   const DataPacket data = packet.payload.first<wire::kDataPacketBytes>();
   const std::uint32_t stamp_us = wire::u32(data.data() + wire::kStampOffset);
   if (stamp_us > wire::kMaxStampUs) return false;
-  // HDL-64E packets name no model; their second block is always of the lower lasers.
-  const bool is_hdl64e = wire::block_flag(data.data(), 1) == wire::kLowerFlag;
-  const SensorModel found = is_hdl64e ? SensorModel::hdl64e : SensorModel::vlp16;
-  if (model != SensorModel::automatic && model != found) return false;
-  const bool good = is_hdl64e ? feed_hdl64e(data, stamp_us, packet.received_ns)
-                              : feed_vlp16(data, stamp_us, packet.received_ns);
+  if (wire::block_flag(data.data(), 0) != wire::kUpperFlag) return false;
+  const SensorIdentity identity = identify(data);
+  const SensorTable* table = accept(identity, packet.received_ns);
+  if (table == nullptr) {
+    refuse(identity);
+    return true;
+  }
+  if (table != &decoder.table()) follow(*table);
+  const bool good = table->model == SensorModel::hdl64e
+                        ? feed_hdl64e(data, stamp_us, packet.received_ns)
+                        : feed_vlp(data, stamp_us, packet.received_ns);
   if (!good) return false;
   ++counts.data_packets;
-  seen_model = found;
+  seen_model = table->model;
+  model_heard_ns = packet.received_ns;
   return true;
 }
 
-bool ScanBuilder::Impl::feed_vlp16(DataPacket data, std::uint32_t stamp_us,
-                                   std::int64_t received_ns) {
-  const std::uint8_t product = wire::u8(data.data() + wire::kTailOffset + 1);
-  const bool known =
-      product == Vlp16Decoder::kProductVlp16 || product == Vlp16Decoder::kProductHiRes;
-  // Old firmware names no product; then the configuration must.
-  if (!known && model != SensorModel::vlp16) return false;
-  if (!vlp16.load(data)) return false;
+// The table to read a packet with, null to refuse it. Old firmware leaves the product byte to
+// chance; then the configuration must name the model.
+const SensorTable* ScanBuilder::Impl::accept(const SensorIdentity& identity,
+                                             std::int64_t received_ns) const {
+  if (model == SensorModel::automatic) {
+    const bool another = identity.table != nullptr && seen_model != SensorModel::automatic &&
+                         identity.table->model != seen_model;
+    const bool replaceable = std::abs(received_ns - model_heard_ns) > kReplaceableNs;
+    return another && !replaceable ? nullptr : identity.table;
+  }
+  if (!ignore_product) {
+    if (identity.table != nullptr) return identity.table->model == model ? identity.table : nullptr;
+    if (is_product(identity.product)) return nullptr;
+  }
+  return decoder.table().model == model ? &decoder.table() : find_sensor(model);
+}
+
+void ScanBuilder::Impl::refuse(const SensorIdentity& identity) {
+  refused.packets = ++counts.wrong_sensor_packets;
+  refused.model =
+      identity.table == nullptr ? SensorModel::automatic : identity.table->model;
+  refused.product_id = identity.product;
+}
+
+void ScanBuilder::Impl::follow(const SensorTable& table) {
+  const bool another = seen_model != SensorModel::automatic && table.model != seen_model;
+  if (another) {
+    assembler.interrupt(clock);
+    clock.restart();
+    sequence = PacketSequence();
+  }
+  decoder.use(table);
+  if (table.model == SensorModel::hdl64e) {
+    hdl64e.take_over();
+  } else if (const Calibration* own = file_of(table.lasers)) {
+    decoder.use_calibration(*own);
+  }
+}
+
+bool ScanBuilder::Impl::feed_vlp(DataPacket data, std::uint32_t stamp_us,
+                                 std::int64_t received_ns) {
+  if (!decoder.load(data)) return false;
   std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
-  const auto verdict = sort(vlp16, stamp_us, received_ns, line_ns);
-  assemble(vlp16, line_ns, verdict);
+  const auto verdict = sort(stamp_us, received_ns, line_ns);
+  assemble(line_ns, verdict);
   return true;
 }
 
@@ -160,13 +226,13 @@ bool ScanBuilder::Impl::feed_hdl64e(DataPacket data, std::uint32_t stamp_us,
     sequence.restart_at(line_ns, received_ns);  // or those that waited would count as lost
     return true;
   }
-  const auto verdict = sort(hdl64e.decoder(), stamp_us, received_ns, line_ns);
+  const auto verdict = sort(stamp_us, received_ns, line_ns);
   if (verdict.arrival == Arrival::restart) {
     hdl64e.restart();
     return true;
   }
   if (hdl64e.is_ready()) {
-    assemble(hdl64e.decoder(), line_ns, verdict);
+    assemble(line_ns, verdict);
   } else {
     ++counts.waiting_packets;
   }
@@ -177,8 +243,7 @@ bool ScanBuilder::Impl::feed_hdl64e(DataPacket data, std::uint32_t stamp_us,
 }
 
 // `line_ns` becomes another one where the sensor's clock jumped: the old line ends there.
-PacketSequence::Verdict ScanBuilder::Impl::sort(const PacketDecoder& decoder,
-                                                std::uint32_t stamp_us, std::int64_t received_ns,
+PacketSequence::Verdict ScanBuilder::Impl::sort(std::uint32_t stamp_us, std::int64_t received_ns,
                                                 std::int64_t& line_ns) {
   auto verdict =
       sequence.see(line_ns, received_ns, decoder.packet_period_ns(), decoder.inner_gap_ns());
@@ -215,8 +280,7 @@ void ScanBuilder::Impl::forgive_blind() {
   counts.packets_blind += miscounted;
 }
 
-void ScanBuilder::Impl::assemble(const PacketDecoder& decoder, std::int64_t line_ns,
-                                 PacketSequence::Verdict verdict) {
+void ScanBuilder::Impl::assemble(std::int64_t line_ns, PacketSequence::Verdict verdict) {
   switch (verdict.arrival) {
     case PacketSequence::Arrival::duplicate:
       assembler.note_duplicate();

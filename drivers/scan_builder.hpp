@@ -43,11 +43,14 @@ struct DriverCounts {
   std::uint64_t scans_partial = 0;
   std::uint64_t sensor_restarts = 0;  ///< its clock jumped
   std::uint64_t stalls = 0;           ///< its head did not come round within half a second
-  std::uint64_t foreign_packets = 0;  ///< of another sensor than the one being followed
+  std::uint64_t foreign_packets = 0;  ///< from another address than the sensor being followed
+  /// Of another model than the configured or followed one (SensorStatus::refused names it).
+  std::uint64_t wrong_sensor_packets = 0;
   std::uint64_t waiting_packets = 0;  ///< came before the firing times or the table were known
 };
 
-struct Hdl64eCalibration;
+struct Calibration;
+
 
 /// Packets to scans: finds the model, decodes, cuts by azimuth, keeps the sensor's clock.
 /// One thread; nothing a packet holds can harm it. A scan that is written gets memory for all that
@@ -68,9 +71,9 @@ class ScanBuilder {
   [[nodiscard]] const DriverCounts& counts() const;
 
   /// HDL-64E: the table in use, or null while there is none.
-  [[nodiscard]] const Hdl64eCalibration* calibration() const;
+  [[nodiscard]] const Calibration* calibration() const;
   /// HDL-64E: use this table, which was read from the packets by someone else.
-  void use_calibration(const Hdl64eCalibration& calibration);
+  void use_calibration(const Calibration& calibration);
 
  private:
   struct Impl;

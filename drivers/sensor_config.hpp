@@ -6,7 +6,8 @@
 
 namespace lilo {
 
-enum class SensorModel : std::uint8_t { automatic, vlp16, hdl64e };
+/// vlp16: VLP-16, Puck LITE and Puck Hi-Res; vls128: VLS-128, also sold as Alpha Prime.
+enum class SensorModel : std::uint8_t { automatic, vlp16, hdl64e, vlp32c, hdl32e, vls128 };
 
 /// Which returns of a dual-return sensor become part of the scan.
 enum class ReturnChoice : std::uint8_t { strongest, last, both };
@@ -14,7 +15,11 @@ enum class ReturnChoice : std::uint8_t { strongest, last, both };
 /// How packets become scans.
 struct SensorConfig {
   SensorModel model = SensorModel::automatic;
-  std::string calibration_file;  ///< HDL-64E: db.xml or the ROS YAML form; empty: from the packets
+  /// Packets are of `model`, whatever product their factory byte names.
+  bool ignore_product_byte = false;
+  /// db.xml or the ROS YAML form, of as many lasers as the sensor has. Empty: built in; HDL-64E: from
+  /// the packets.
+  std::string calibration_file;
   /// Where a table read from the packets in an earlier run was kept; empty: nowhere.
   std::string state_directory;
   double cut_azimuth_rad = 0.0;  ///< a scan starts here; clockwise from +x as the sensor counts

@@ -4,6 +4,7 @@
 #include "drivers/sensor_config.hpp"
 
 #include <cstdint>
+#include <string>
 
 namespace lilo {
 
@@ -12,16 +13,27 @@ enum class ReturnMode : std::uint8_t { strongest, last, dual };
 /// Where the geometry of the lasers comes from.
 enum class CalibrationOrigin : std::uint8_t {
   none,      ///< HDL-64E without a table: its packets cannot be used yet
-  built_in,  ///< VLP-16: the same for every unit
+  built_in,  ///< the same for every unit of the model (all but HDL-64E)
   file,      ///< SensorConfig::calibration_file
   stored,    ///< kept from an earlier run in SensorConfig::state_directory
   packets,   ///< read from the status bytes of this run
 };
 
+/// The last packets that were refused because they are of another sensor than the one configured or
+/// followed.
+struct RefusedSensor {
+  std::uint64_t packets = 0;                   ///< as DriverCounts::wrong_sensor_packets
+  SensorModel model = SensorModel::automatic;  ///< automatic: of none that is known here
+  std::uint8_t product_id = 0;                 ///< 0: HDL-64E
+
+  /// "VLP-32C (product byte 0x28)"; empty while none was refused.
+  [[nodiscard]] std::string name() const;
+};
+
 /// What is known of the sensor. Zero where nothing is.
 struct SensorStatus {
   SensorModel model = SensorModel::automatic;  ///< automatic: no packet of a known model yet
-  std::uint8_t product_id = 0;                 ///< VLP-16: 0x22, Puck Hi-Res: 0x24; else 0
+  std::uint8_t product_id = 0;                 ///< as in SensorTable: VLP-16 0x22; HDL-64E: 0
   ReturnMode return_mode = ReturnMode::strongest;
   double rpm = 0.0;
   double packet_period_us = 0.0;  ///< HDL-64E: 0 until it is measured
@@ -35,6 +47,7 @@ struct SensorStatus {
   std::uint8_t firmware = 0;               ///< HDL-64E: 0x47 is 4.07
   std::uint8_t temperature_c = 0;          ///< HDL-64E
   std::uint32_t sensor_ipv4 = 0;           ///< host byte order
+  RefusedSensor refused;
 };
 
 }  // namespace lilo

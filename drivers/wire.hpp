@@ -19,8 +19,10 @@ inline constexpr std::size_t kChannelBytes = 3;
 inline constexpr std::size_t kStampOffset = 1200;
 inline constexpr std::size_t kTailOffset = 1204;
 
-inline constexpr std::uint16_t kUpperFlag = 0xEEFF;  ///< lasers 0-31, and every VLP-16 block
-inline constexpr std::uint16_t kLowerFlag = 0xDDFF;  ///< HDL-64E lasers 32-63
+inline constexpr std::uint16_t kUpperFlag = 0xEEFF;   ///< lasers 0-31 of every model
+inline constexpr std::uint16_t kLowerFlag = 0xDDFF;   ///< lasers 32-63 of HDL-64E and VLS-128
+inline constexpr std::uint16_t kThirdFlag = 0xCCFF;   ///< VLS-128 lasers 64-95
+inline constexpr std::uint16_t kFourthFlag = 0xBBFF;  ///< VLS-128 lasers 96-127
 
 inline constexpr std::uint16_t kDataPort = 2368;
 inline constexpr std::uint16_t kPositionPort = 8308;
@@ -29,7 +31,6 @@ inline constexpr std::uint16_t kPositionPort = 8308;
 inline constexpr int kTicksPerTurn = 36000;
 inline constexpr double kRadPerTick = 2.0 * std::numbers::pi / kTicksPerTurn;
 
-inline constexpr float kMetresPerStep = 0.002F;  ///< distance unit of VLP-16 and HDL-64E S2/S3
 
 /// A VLP-16 may count past the hour before it wraps (ros-drivers/velodyne issue 218).
 inline constexpr std::uint32_t kMaxStampUs = 3'600'999'999U;

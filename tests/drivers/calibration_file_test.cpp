@@ -1,4 +1,4 @@
-#include "drivers/hdl64e_calibration.hpp"
+#include "drivers/calibration.hpp"
 #include "drivers/packet_source.hpp"
 #include "tests/drivers/capture_file.hpp"
 #include "tests/drivers/data_dir.hpp"
@@ -44,9 +44,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 TEST(CalibrationFile, WhatIsStoredIsRead) {
   const std::string path = testing::TempDir() + "/round.yaml";
-  const Hdl64eCalibration stored = test::sample_calibration(true);
+  const Calibration stored = test::sample_calibration(true);
   ASSERT_TRUE(store_calibration(path, stored));
-  const Hdl64eCalibration read = load_calibration(path);
+  const Calibration read = load_calibration(path);
   for (std::size_t i = 0; i < 64; ++i) {
     EXPECT_NEAR(read.lasers[i].rot_rad, stored.lasers[i].rot_rad, 1e-11);
     EXPECT_NEAR(read.lasers[i].dist_y_m, stored.lasers[i].dist_y_m, 1e-11);
@@ -60,7 +60,7 @@ TEST(CalibrationFile, RealTablesAreRead) {
   LILO_NEED_DATA("calib");
   for (const char* name : {"64e_s2.1-sztaki.yaml", "64e_s3-xiesc.yaml", "64e_utexas.yaml",
                            "hdl64e_s3_unit1090_calib.yaml"}) {
-    const Hdl64eCalibration c = load_calibration(test::data_path(std::string("calib/") + name));
+    const Calibration c = load_calibration(test::data_path(std::string("calib/") + name));
     // Upper block above the lower one (velodyne manual; settled by the unit 1090's own table).
     EXPECT_GT(c.lasers[0].vert_rad, -10.0 * kDeg) << name;
     EXPECT_LT(c.lasers[63].vert_rad, -8.0 * kDeg) << name;

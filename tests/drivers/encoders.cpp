@@ -228,8 +228,9 @@ std::vector<TimedPacket> hdl64e_packets(int count, const HdlOptions& o) {
   return packets;
 }
 
-Hdl64eCalibration sample_calibration(bool two_point) {
-  Hdl64eCalibration calibration;
+Calibration sample_calibration(bool two_point) {
+  Calibration calibration;
+  calibration.lasers.resize(64);
   for (int i = 0; i < 64; ++i) {
     LaserCorrection& c = calibration.lasers[static_cast<std::size_t>(i)];
     // Upper block from +2 degrees down, lower block from -8.85 down, both out of order by pairs.

@@ -1,5 +1,5 @@
 // Packets of a known room, made by the manuals' tables, must decode to points on its surfaces.
-#include "drivers/hdl64e_decoder.hpp"
+#include "drivers/sensor_table.hpp"
 #include "tests/drivers/packets.hpp"
 
 #include <gtest/gtest.h>
@@ -240,15 +240,16 @@ TEST(Vlp16, PacketPeriodFollowsTheMode) {
       test::build(test::vlp16_packets(2, {.mode = Mode::dual})).status.packet_period_us, 663.552);
 }
 
-TEST(FiringTable, IsChosenByThePacketPeriod) {
-  EXPECT_EQ(find_firing_table(288.0e3, false)->shot_ns, 48000);
-  EXPECT_EQ(find_firing_table(345.6e3, false)->shot_ns, 57600);
-  EXPECT_EQ(find_firing_table(172.8e3, true)->shot_ns, 57600);
-  EXPECT_EQ(find_firing_table(144.0e3, true)->shot_ns, 48000);
-  EXPECT_EQ(find_firing_table(288.0e3 * 1.039, false)->shot_ns, 48000);
-  EXPECT_EQ(find_firing_table(288.0e3 * 1.05, false), nullptr);
-  EXPECT_EQ(find_firing_table(200.0e3, false), nullptr);
-  EXPECT_EQ(find_firing_table(0.0, false), nullptr);
+TEST(FiringTimes, AreChosenByThePacketPeriod) {
+  const SensorTable& hdl64e = *find_sensor(SensorModel::hdl64e);
+  EXPECT_EQ(find_firing_times(hdl64e, 288.0e3, false)->cycle_ns, 48000);
+  EXPECT_EQ(find_firing_times(hdl64e, 345.6e3, false)->cycle_ns, 57600);
+  EXPECT_EQ(find_firing_times(hdl64e, 172.8e3, true)->cycle_ns, 57600);
+  EXPECT_EQ(find_firing_times(hdl64e, 144.0e3, true)->cycle_ns, 48000);
+  EXPECT_EQ(find_firing_times(hdl64e, 288.0e3 * 1.039, false)->cycle_ns, 48000);
+  EXPECT_EQ(find_firing_times(hdl64e, 288.0e3 * 1.05, false), nullptr);
+  EXPECT_EQ(find_firing_times(hdl64e, 200.0e3, false), nullptr);
+  EXPECT_EQ(find_firing_times(hdl64e, 0.0, false), nullptr);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ const std::vector<Status>& s2_laps() {
   return laps;
 }
 
-void expect_same(const Hdl64eCalibration& a, const Hdl64eCalibration& b) {
+void expect_same(const Calibration& a, const Calibration& b) {
   for (std::size_t i = 0; i < 64; ++i) {
     const LaserCorrection &x = a.lasers[i], &y = b.lasers[i];
     EXPECT_NEAR(x.rot_rad, y.rot_rad, 1e-9);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "drivers/hdl64e_calibration.hpp"
+#include "drivers/calibration.hpp"
 #include "drivers/scan_builder.hpp"
 
 #include <cstddef>
@@ -62,7 +62,7 @@ std::vector<TimedPacket> vlp16_packets(int count, const DriveOptions& options,
 
 struct HdlOptions {
   DriveOptions drive;
-  Hdl64eCalibration calibration;
+  Calibration calibration;
   bool s3 = false;  ///< 57.6 us a shot and a checksum, else 48 us and none
   bool break_checksum = false;
   bool gps = true;         ///< status byte G is 'A'
@@ -72,7 +72,7 @@ struct HdlOptions {
 std::vector<TimedPacket> hdl64e_packets(int count, const HdlOptions& options);
 
 /// Angles and offsets like those of a real unit, in whole hundredths of a degree and millimetres.
-Hdl64eCalibration sample_calibration(bool two_point);
+Calibration sample_calibration(bool two_point);
 
 /// A position packet; `sentence` as it stands at 0xCE.
 TimedPacket position_packet(std::uint32_t stamp_us, int pps, const std::string& sentence,

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace lilo {
 
-/// How one laser of an HDL-64E points and measures (S3 manual 63-HDL64ES3 rev. K, appendix "dual
-/// two point calibration"). Metres and radians.
+/// How one laser points and measures (HDL-64E S3 manual 63-HDL64ES3 rev. K, appendix "dual two
+/// point calibration"; the other models need angles and heights alone). Metres and radians.
 struct LaserCorrection {
   double rot_rad = 0.0;         ///< the laser points this much less than the head's azimuth
   double vert_rad = 0.0;        ///< elevation
@@ -24,23 +24,24 @@ struct LaserCorrection {
   bool operator==(const LaserCorrection&) const = default;
 };
 
-struct Hdl64eCalibration {
-  static constexpr std::size_t kLasers = 64;
-  std::array<LaserCorrection, kLasers> lasers{};
+/// One unit's lasers, by the number they have on the wire: 16, 32, 64 or 128 of them.
+struct Calibration {
+  std::vector<LaserCorrection> lasers;
+  /// Of the HDL-64E, whose early units had others. All other models' are the model's own.
   double distance_step_m = 0.002;
 
-  bool operator==(const Hdl64eCalibration&) const = default;
+  bool operator==(const Calibration&) const = default;
 };
 
-/// Why this cannot be the table of an HDL-64E, one clause; empty when it can.
-std::string implausible(const Hdl64eCalibration& calibration);
+/// Why this cannot be the table of a rotating Velodyne, one clause; empty when it can.
+std::string implausible(const Calibration& calibration);
 
 /// Reads Velodyne's db.xml (centimetres, degrees) or the YAML form of ros-drivers/velodyne (metres,
 /// radians). Throws DriverError naming file, laser and key.
-Hdl64eCalibration load_calibration(const std::string& path);
+Calibration load_calibration(const std::string& path);
 
 /// The YAML form, as load_calibration() reads it.
-std::string calibration_yaml(const Hdl64eCalibration& calibration);
+std::string calibration_yaml(const Calibration& calibration);
 
 /// Where a table read from packets is kept in SensorConfig::state_directory. Who writes it does so
 /// on another thread than the one that reads packets.
@@ -48,6 +49,6 @@ std::string stored_calibration_path(const std::string& state_directory);
 
 /// Writes the YAML form, through a temporary file so that a reader never sees half of it. False
 /// when the folder cannot be written.
-bool store_calibration(const std::string& path, const Hdl64eCalibration& calibration);
+bool store_calibration(const std::string& path, const Calibration& calibration);
 
 }  // namespace lilo

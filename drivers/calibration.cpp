@@ -1,4 +1,4 @@
-#include "drivers/hdl64e_calibration.hpp"
+#include "drivers/calibration.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -17,7 +17,7 @@ struct Limit {
 
 // Well beyond every table published, well within what a wrong byte makes.
 constexpr Limit kLimits[] = {
-    {"vertical angle", &LaserCorrection::vert_rad, -35.0 * kRadPerDeg, 15.0 * kRadPerDeg},
+    {"vertical angle", &LaserCorrection::vert_rad, -35.0 * kRadPerDeg, 25.0 * kRadPerDeg},
     {"rotational angle", &LaserCorrection::rot_rad, -25.0 * kRadPerDeg, 25.0 * kRadPerDeg},
     {"distance correction", &LaserCorrection::dist_m, -3.0, 5.0},
     {"distance correction x", &LaserCorrection::dist_x_m, -3.0, 5.0},
@@ -37,7 +37,7 @@ std::string describe(std::size_t laser, const Limit& limit, double value) {
 
 }  // namespace
 
-std::string implausible(const Hdl64eCalibration& calibration) {
+std::string implausible(const Calibration& calibration) {
   double lowest = 1.0, highest = -1.0;
   for (std::size_t i = 0; i < calibration.lasers.size(); ++i) {
     const LaserCorrection& laser = calibration.lasers[i];
