@@ -22,11 +22,18 @@ constexpr Reload kRestart = Reload::restart;
 
 std::vector<Key> sensor_keys() {
   return {
-      choice("sensor.model", LILO_MEMBER(sensor.model), {"auto", "vlp16", "hdl64e"}, kRestart,
-             "The sensor; auto finds out from its packets."),
-      text("sensor.calibration_file", LILO_MEMBER(sensor.calibration_file), kOptionalPath, kRestart,
-           "HDL-64E: the unit's calibration (db.xml or the ROS YAML form), relative to this file. "
-           "Empty: collected from the status bytes of the packets, which takes about 4 s."),
+      choice("sensor.model", LILO_MEMBER(sensor.model),
+             {"auto", "vlp16", "hdl64e", "vlp32c", "hdl32e", "vls128"}, kRestart,
+             "The sensor; auto finds out from its packets. vlp16 is the Puck LITE and the Puck "
+             "Hi-Res too, vls128 the Alpha Prime. Packets of another one are refused."),
+      boolean("sensor.ignore_product_byte", LILO_MEMBER(sensor.ignore_product_byte), kRestart,
+              "Believe sensor.model even where the packets name another product (payload byte "
+              "1205), for a sensor whose byte is wrong. Without a model, nothing is ignored."),
+      text(
+          "sensor.calibration_file", LILO_MEMBER(sensor.calibration_file), kOptionalPath, kRestart,
+          "The unit's calibration (db.xml or the ROS YAML form), relative to this file. Empty: the "
+          "model's own; HDL-64E: collected from the status bytes of the packets, which takes "
+          "about 4 s."),
       angle("sensor.cut_azimuth_deg", LILO_MEMBER(sensor.cut_azimuth_rad), 0.0, 359.99, kRestart,
             "Where one scan ends and the next begins, as the sensor counts azimuth (clockwise from "
             "above). Best where the robot itself hides the view."),

@@ -156,6 +156,12 @@ const char* to_string(SensorModel model) {
       return "vlp16";
     case SensorModel::hdl64e:
       return "hdl64e";
+    case SensorModel::vlp32c:
+      return "vlp32c";
+    case SensorModel::hdl32e:
+      return "hdl32e";
+    case SensorModel::vls128:
+      return "vls128";
   }
   return "";
 }

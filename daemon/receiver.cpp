@@ -1,6 +1,7 @@
 #include "daemon/receiver.hpp"
 
 #include "daemon/clock.hpp"
+#include "drivers/sensor_table.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -117,14 +118,16 @@ Scan& Receiver::exchange(Scan& finished) {
 }
 
 void prepare_slot(ScanSlot& slot, SensorModel model, const OdometryConfig& odometry) {
-  // One return a firing at 10 Hz: 28 928 and 133 333. What an unknown model, dual returns or a
-  // slower head need more, the slots take in their first turn and keep.
-  constexpr std::size_t kVlp16Returns = 32'000, kHdl64eReturns = 140'000;
+  // One return a firing at 10 Hz, and a tenth more. What an unknown model, dual returns or a slower
+  // head need more, the slots take in their first turn and keep.
+  constexpr double kTurnNs = 110e6;
+  const SensorTable* known = find_sensor(model);
+  const SensorTable& sensor = known != nullptr ? *known : *find_sensor(SensorModel::vlp16);
+  const double cycles = kTurnNs / sensor.times.front().cycle_ns;
   // With a value: a resize() alone leaves Returns untouched.
-  slot.scan.returns.assign(model == SensorModel::hdl64e ? kHdl64eReturns : kVlp16Returns, Return{});
+  slot.scan.returns.assign(static_cast<std::size_t>(cycles * sensor.lasers), Return{});
   slot.scan.clear();
-  const int rings = model == SensorModel::hdl64e ? 64 : 16;
-  slot.features.all.resize(most_features(odometry, rings));
+  slot.features.all.resize(most_features(odometry, sensor.lasers));
   slot.features.all.clear();
 }
 

@@ -1,5 +1,5 @@
-#include "drivers/calibration_xml.hpp"
 #include "drivers/calibration.hpp"
+#include "drivers/calibration_xml.hpp"
 #include "drivers/packet_source.hpp"
 
 #include <yaml-cpp/yaml.h>
@@ -76,9 +76,9 @@ Calibration read_yaml(const std::string& path, const std::string& text) {
     if (!node.IsMap()) refuse(path, node.Mark(), "lasers: expected a map per laser");
     const int id = read(path, node, "laser_id", -1, "a whole number");
     if (id < 0 || id >= static_cast<int>(count))
-      refuse(path, node.Mark(),
-             "laser_id: expected 0 to " + std::to_string(count - 1) + ", found " +
-                 std::to_string(id));
+      refuse(
+          path, node.Mark(),
+          "laser_id: expected 0 to " + std::to_string(count - 1) + ", found " + std::to_string(id));
     const auto i = static_cast<std::size_t>(id);
     if (seen[i]) refuse(path, node.Mark(), "laser_id: " + std::to_string(id) + " stands twice");
     seen[i] = true;

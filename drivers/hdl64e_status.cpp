@@ -11,8 +11,7 @@ namespace {
 
 constexpr std::string_view kTimeTypes = "HMSDNYGTV";
 constexpr std::string_view kMarker = "UNIT#";
-constexpr std::size_t kHeaderBytes = 7, kRecordBytes = 28, kLaserBytes = 21,
-                      kLasers = 64;
+constexpr std::size_t kHeaderBytes = 7, kRecordBytes = 28, kLaserBytes = 21, kLasers = 64;
 constexpr std::uint16_t kS2Length = Hdl64eStatus::kTableBytes;
 
 using Record = const std::uint8_t*;

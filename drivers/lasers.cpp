@@ -43,8 +43,8 @@ void set_lasers(const Calibration& calibration, double step_m, double min_range_
   lasers.beams = {.ring_count = static_cast<int>(count), .elevation_rad = {}};
   lasers.step_m = static_cast<float>(step_m);
   lasers.largest_rot_rad = 0.0F;
-  lasers.corrected = std::any_of(calibration.lasers.begin(), calibration.lasers.end(),
-                                 needs_more_than_angles);
+  lasers.corrected =
+      std::any_of(calibration.lasers.begin(), calibration.lasers.end(), needs_more_than_angles);
   constexpr double kMostSteps = 65535.0;
   for (std::size_t ring = 0; ring < count; ++ring) {
     const std::size_t i = by_elevation[ring];

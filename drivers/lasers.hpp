@@ -31,8 +31,8 @@ struct Lasers {
 void set_lasers(const Calibration& calibration, double step_m, double min_range_m,
                 double max_range_m, Lasers& lasers);
 
-/// The angle of each laser clockwise of its block's azimuth, at its firing: what the head has turned
-/// since, less the rotational correction. Where a block holds two cycles, for each of them.
+/// The angle of each laser clockwise of its block's azimuth, at its firing: what the head has
+/// turned since, less the rotational correction. Where a block holds two cycles, for each of them.
 struct LaserAngles {
   std::array<float, kMaxRings> cos, sin, rad;
   float largest_rad = 0.0F;

@@ -192,8 +192,8 @@ double PacketDecoder::speed_over_packets() {
   double ticks_per_ns = mean_ticks_per_ns_;
   for (std::size_t back = std::min(instant_count_, kInstants); back > 0; --back) {
     const Instant& then = instants_[(instant_count_ - back) % kInstants];
-    const std::uint32_t span_us =
-        now.stamp_us >= then.stamp_us ? now.stamp_us - then.stamp_us
+    const std::uint32_t span_us = now.stamp_us >= then.stamp_us
+                                      ? now.stamp_us - then.stamp_us
                                       : now.stamp_us + kHourUs - then.stamp_us;
     if (span_us == 0 || span_us > kMaxSpanUs) continue;
     ticks_per_ns = short_way_ticks(then.azimuth, now.azimuth) / (span_us * 1e3);
@@ -213,9 +213,8 @@ void PacketDecoder::turn_lasers() {
     angles_.sin[i] = a - a * a * a * (1.0F / 6.0F - a * a / 120.0F);
   }
   const double last_ns = angle_count_ > 0 ? delay_ns_[angle_count_ - 1] : 0;
-  angles_.largest_rad =
-      std::abs(static_cast<float>(ticks_per_ns_ * last_ns * wire::kRadPerTick)) +
-      lasers_.largest_rot_rad;
+  angles_.largest_rad = std::abs(static_cast<float>(ticks_per_ns_ * last_ns * wire::kRadPerTick)) +
+                        lasers_.largest_rot_rad;
   if (!offset) return;
   const auto lasers = static_cast<std::size_t>(table_->lasers);
   for (std::size_t i = 0; i < angle_count_; ++i) {

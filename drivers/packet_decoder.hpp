@@ -30,8 +30,9 @@ struct Column {
 /// With azimuth a (clockwise) of a laser, elevation w and distance r, and the height z0 of the
 /// beam's origin:
 ///   x = r cos w cos a,  y = -r cos w sin a,  z = r sin w + z0,
-/// where a is the head's azimuth at the firing less the laser's rotational correction. A calibration
-/// with distance corrections or origins beside the axis (HDL-64E) adds, with h and v the offsets:
+/// where a is the head's azimuth at the firing less the laser's rotational correction. A
+/// calibration with distance corrections or origins beside the axis (HDL-64E) adds, with h and v
+/// the offsets:
 ///   x = d_y cos w cos a + h sin a,  y = -(d_x cos w sin a - h cos a),  z = d_m sin w + v.
 /// d_x and d_y carry the near-range corrections, linear between 2.40 m (x) or 1.93 m (y) and
 /// 25.04 m, where they meet the far one; d_m is their mean, since the manual's choice of d_y alone

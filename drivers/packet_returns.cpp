@@ -32,8 +32,8 @@ LILO_INLINE Firing<kLasers> PacketDecoder::project(int block, std::size_t laser,
   const std::byte* bytes = wire::block(packet_, block);
   // A block holds two cycles of a sensor with sixteen lasers.
   const std::size_t first_channel = kLasers == kBank ? 0 : angle;
-  const auto raw = channels<kLasers>(bytes + wire::kBlockHeaderBytes +
-                                     first_channel * wire::kChannelBytes);
+  const auto raw =
+      channels<kLasers>(bytes + wire::kBlockHeaderBytes + first_channel * wire::kChannelBytes);
   const AzimuthTable::Entry base = azimuths_[wire::u16(bytes + 2)];
   const float step_m = lasers_.step_m;
   Firing<kLasers> seen;

@@ -104,8 +104,8 @@ SensorStatus ScanBuilder::status() const {
   status.product_id = table.product;
   status.return_mode = impl.decoder.mode();
   status.packet_period_us = impl.decoder.packet_period_ns() * 1e-3;
-  status.calibration = impl.file_of(table.lasers) != nullptr ? CalibrationOrigin::file
-                                                              : CalibrationOrigin::built_in;
+  status.calibration =
+      impl.file_of(table.lasers) != nullptr ? CalibrationOrigin::file : CalibrationOrigin::built_in;
   if (impl.seen_model == SensorModel::hdl64e) impl.hdl64e.describe(status);
   impl.assembler.describe(status);
   status.rpm = std::abs(impl.decoder.ticks_per_ns()) * 60e9 / wire::kTicksPerTurn;
@@ -187,8 +187,7 @@ const SensorTable* ScanBuilder::Impl::accept(const SensorIdentity& identity,
 
 void ScanBuilder::Impl::refuse(const SensorIdentity& identity) {
   refused.packets = ++counts.wrong_sensor_packets;
-  refused.model =
-      identity.table == nullptr ? SensorModel::automatic : identity.table->model;
+  refused.model = identity.table == nullptr ? SensorModel::automatic : identity.table->model;
   refused.product_id = identity.product;
 }
 

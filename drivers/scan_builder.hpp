@@ -51,7 +51,6 @@ struct DriverCounts {
 
 struct Calibration;
 
-
 /// Packets to scans: finds the model, decodes, cuts by azimuth, keeps the sensor's clock.
 /// One thread; nothing a packet holds can harm it. A scan that is written gets memory for all that
 /// a revolution can hold when it begins: with a sink of two scans there is no allocation after the

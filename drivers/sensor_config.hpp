@@ -17,8 +17,8 @@ struct SensorConfig {
   SensorModel model = SensorModel::automatic;
   /// Packets are of `model`, whatever product their factory byte names.
   bool ignore_product_byte = false;
-  /// db.xml or the ROS YAML form, of as many lasers as the sensor has. Empty: built in; HDL-64E: from
-  /// the packets.
+  /// db.xml or the ROS YAML form, of as many lasers as the sensor has. Empty: built in; HDL-64E:
+  /// from the packets.
   std::string calibration_file;
   /// Where a table read from the packets in an earlier run was kept; empty: nowhere.
   std::string state_directory;

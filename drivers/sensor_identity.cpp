@@ -36,7 +36,7 @@ std::string product_name(std::uint8_t product) {
 
 std::string RefusedSensor::name() const {
   if (packets == 0) return {};
-  if (product_id == 0) return find_sensor(SensorModel::hdl64e)->name;
+  if (model == SensorModel::hdl64e) return find_sensor(model)->name;
   const std::string known = product_name(product_id);
   std::array<char, 32> byte{};
   std::snprintf(byte.data(), byte.size(), " (product byte 0x%02X)", product_id);

@@ -30,9 +30,9 @@ constexpr FiringTimes hdl64e(std::int32_t cycle_ns, std::int32_t group_ns,
   return times;
 }
 
-// --- VLP-16, Puck LITE, Puck Hi-Res. Manual 63-9243 rev. D: firing times 9.3.1.3 and 9.4, two cycles
-// of 16 firings 2.304 us apart and 18.432 us of recharge; elevations and vertical correction table
-// 9-1 (11.2 mm at 15 degrees: 41.91 mm tan w); bytes 37 to 39 and 22, 24 page 56 and 57.
+// --- VLP-16, Puck LITE, Puck Hi-Res. Manual 63-9243 rev. D: firing times 9.3.1.3 and 9.4, two
+// cycles of 16 firings 2.304 us apart and 18.432 us of recharge; elevations and vertical correction
+// table 9-1 (11.2 mm at 15 degrees: 41.91 mm tan w); bytes 37 to 39 and 22, 24 page 56 and 57.
 constexpr std::array<FiringTimes, 1> kVlp16Times{in_groups(55'296, 16, 1, 2'304)};
 constexpr std::array<double, 16> kVlp16Deg{-15, 1, -13, 3,  -11, 5,  -9, 7,
                                            -7,  9, -5,  11, -3,  13, -1, 15};
@@ -42,13 +42,13 @@ constexpr double kVlp16Origin_m = 0.04191;
 
 // --- VLP-32C. Manual 63-9325, chapter 9: two lasers at a time, 2.304 us apart, 55.296 us a cycle,
 // distances in 4 mm. The angles are those that tier4/nebula and velodyne_decoder ship as well, and
-// the real capture's points agree. The origin's 42.4 mm are in none of them: without it the floor of
-// the real capture lies 24 mm lower below the sensor than 2 m away, with it 11 mm.
+// the real capture's points agree. The origin's 42.4 mm are in none of them: without it the floor
+// of the real capture lies 24 mm lower below the sensor than 2 m away, with it 11 mm.
 constexpr std::array<FiringTimes, 1> kVlp32cTimes{in_groups(55'296, 32, 2, 2'304)};
 constexpr std::array<double, 32> kVlp32cDeg{
-    -25,    -1,    -1.667, -15.639, -11.31, 0,      -0.667, -8.843, -7.254, 0.333, -0.333,
-    -6.148, -5.333, 1.333, 0.667,   -4,     -4.667, 1.667,  1,      -3.667, -3.333, 3.333,
-    2.333,  -2.667, -3,    7,       4.667,  -2.333, -2,     15,     10.333, -1.333};
+    -25,    -1,     -1.667, -15.639, -11.31, 0,      -0.667, -8.843, -7.254, 0.333,  -0.333,
+    -6.148, -5.333, 1.333,  0.667,   -4,     -4.667, 1.667,  1,      -3.667, -3.333, 3.333,
+    2.333,  -2.667, -3,     7,       4.667,  -2.333, -2,     15,     10.333, -1.333};
 constexpr std::array<double, 32> kVlp32cAzimuthDeg{
     1.4, -4.2, 1.4, -1.4, 1.4, -1.4, 4.2, -1.4, 1.4, -4.2, 1.4, -1.4, 4.2, -1.4, 4.2, -1.4,
     1.4, -4.2, 1.4, -4.2, 4.2, -1.4, 1.4, -1.4, 1.4, -1.4, 1.4, -4.2, 4.2, -1.4, 1.4, -1.4};
@@ -57,34 +57,34 @@ constexpr std::array<double, 32> kVlp32cAzimuthDeg{
 // "firing sequence"); elevations table "vertical angles by laser id", all on the axis.
 constexpr std::array<FiringTimes, 1> kHdl32eTimes{in_groups(46'080, 32, 1, 1'152)};
 constexpr std::array<double, 32> kHdl32eDeg{
-    -30.67, -9.33,  -29.33, -8.00,  -28.00, -6.67,  -26.67, -5.33,  -25.33, -4.00, -24.00,
+    -30.67, -9.33,  -29.33, -8.00,  -28.00, -6.67,  -26.67, -5.33,  -25.33, -4.00,  -24.00,
     -2.67,  -22.67, -1.33,  -21.33, 0.00,   -20.00, 1.33,   -18.67, 2.67,   -17.33, 4.00,
     -16.00, 5.33,   -14.67, 6.67,   -13.33, 8.00,   -12.00, 9.33,   -10.67, 10.67};
 
-// --- VLS-128 (Alpha Prime). Manual, pages 57 (dual return: eight blocks, four without data), 61 and
-// 64 (firing times), as tier4/nebula cites them: eight lasers at a time, 2.665 us apart, one pause
-// after eight of the sixteen groups (VeloView: two), 53.3 us a cycle; the fourth group fires with the
-// stamp (8.7 us in ros-drivers). The real capture's cycle is 55.28 us, wavering by 0.7 us from
-// packet to packet, and later firmware is said to take 57.8 us: it is measured. Distances are in
-// 4 mm, whatever calibration files say (7 mm in nebula's): the real capture's reference cloud.
+// --- VLS-128 (Alpha Prime). Manual, pages 57 (dual return: eight blocks, four without data), 61
+// and 64 (firing times), as tier4/nebula cites them: eight lasers at a time, 2.665 us apart, one
+// pause after eight of the sixteen groups (VeloView: two), 53.3 us a cycle; the fourth group fires
+// with the stamp (8.7 us in ros-drivers). The real capture's cycle is 55.28 us, wavering by 0.7 us
+// from packet to packet, and later firmware is said to take 57.8 us: it is measured. Distances are
+// in 4 mm, whatever calibration files say (7 mm in nebula's): the real capture's reference cloud.
 constexpr std::array<FiringTimes, 1> kVls128Times{in_groups(53'300, 128, 8, 2'665, 8)};
 constexpr std::array<double, 128> kVls128Deg{
-    -11.742, -1.99,   3.4,    -5.29,  -0.78,  4.61,    -4.08,   1.31,    //
-    -6.5,    -1.11,   4.28,   -4.41,  0.1,    6.48,    -3.2,    2.19,    //
-    -3.86,   1.53,    -9.244, -1.77,  2.74,   -5.95,   -0.56,   4.83,    //
-    -2.98,   2.41,    -6.28,  -0.89,  3.62,   -5.07,   0.32,    7.58,    //
-    -0.34,   5.18,    -3.64,  1.75,   -25,    -2.43,   2.96,    -5.73,   //
-    0.54,    9.7,     -2.76,  2.63,   -7.65,  -1.55,   3.84,    -4.85,   //
-    3.18,    -5.51,   -0.12,  5.73,   -4.3,   1.09,    -16.042, -2.21,   //
-    4.06,    -4.63,   0.76,   15,     -3.42,  1.97,    -6.85,   -1.33,   //
-    -5.62,   -0.23,   5.43,   -3.53,  0.98,   -19.582, -2.32,   3.07,    //
-    -4.74,   0.65,    11.75,  -2.65,  1.86,   -7.15,   -1.44,   3.95,    //
-    -2.1,    3.29,    -5.4,   -0.01,  4.5,    -4.19,   1.2,     -13.565, //
-    -1.22,   4.17,    -4.52,  0.87,   6.08,   -3.31,   2.08,    -6.65,   //
-    1.42,    -10.346, -1.88,  3.51,   -6.06,  -0.67,   4.72,    -3.97,   //
-    2.3,     -6.39,   -1,     4.39,   -5.18,  0.21,    6.98,    -3.09,   //
-    4.98,    -3.75,   1.64,   -8.352, -2.54,  2.85,    -5.84,   -0.45,   //
-    8.43,    -2.87,   2.52,   -6.17,  -1.66,  3.73,    -4.96,   0.43};
+    -11.742, -1.99,   3.4,    -5.29,  -0.78, 4.61,    -4.08,   1.31,     //
+    -6.5,    -1.11,   4.28,   -4.41,  0.1,   6.48,    -3.2,    2.19,     //
+    -3.86,   1.53,    -9.244, -1.77,  2.74,  -5.95,   -0.56,   4.83,     //
+    -2.98,   2.41,    -6.28,  -0.89,  3.62,  -5.07,   0.32,    7.58,     //
+    -0.34,   5.18,    -3.64,  1.75,   -25,   -2.43,   2.96,    -5.73,    //
+    0.54,    9.7,     -2.76,  2.63,   -7.65, -1.55,   3.84,    -4.85,    //
+    3.18,    -5.51,   -0.12,  5.73,   -4.3,  1.09,    -16.042, -2.21,    //
+    4.06,    -4.63,   0.76,   15,     -3.42, 1.97,    -6.85,   -1.33,    //
+    -5.62,   -0.23,   5.43,   -3.53,  0.98,  -19.582, -2.32,   3.07,     //
+    -4.74,   0.65,    11.75,  -2.65,  1.86,  -7.15,   -1.44,   3.95,     //
+    -2.1,    3.29,    -5.4,   -0.01,  4.5,   -4.19,   1.2,     -13.565,  //
+    -1.22,   4.17,    -4.52,  0.87,   6.08,  -3.31,   2.08,    -6.65,    //
+    1.42,    -10.346, -1.88,  3.51,   -6.06, -0.67,   4.72,    -3.97,    //
+    2.3,     -6.39,   -1,     4.39,   -5.18, 0.21,    6.98,    -3.09,    //
+    4.98,    -3.75,   1.64,   -8.352, -2.54, 2.85,    -5.84,   -0.45,    //
+    8.43,    -2.87,   2.52,   -6.17,  -1.66, 3.73,    -4.96,   0.43};
 constexpr std::array<double, 8> kVls128AzimuthDeg{6.354,  4.548,  2.732,  0.911,
                                                   -0.911, -2.732, -4.548, -6.354};
 
@@ -92,9 +92,8 @@ constexpr std::array<double, 8> kVls128AzimuthDeg{6.354,  4.548,  2.732,  0.911,
 // manual 63-HDL64ES3 rev. K (57.6 us); which one holds tells the packets' period. VeloView counts
 // the stamp as the end of the packet, others as its beginning; no manual page says. It shifts all
 // times alike by one packet. Each unit has its own angles.
-constexpr std::array<FiringTimes, 2> kHdl64eTimes{
-    hdl64e(48'000, 6'000, {0, 1'260, 2'460, 3'660}),
-    hdl64e(57'600, 7'200, {0, 1'300, 2'500, 3'700})};
+constexpr std::array<FiringTimes, 2> kHdl64eTimes{hdl64e(48'000, 6'000, {0, 1'260, 2'460, 3'660}),
+                                                  hdl64e(57'600, 7'200, {0, 1'300, 2'500, 3'700})};
 
 constexpr SensorTable kVlp16{.model = SensorModel::vlp16,
                              .name = "VLP-16",

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <span>
 
-/// A model is data: what the packets of each rotating Velodyne say and how they say it. PacketDecoder
-/// works with any of these tables; a new model is a new table in sensor_table.cpp.
+/// A model is data: what the packets of each rotating Velodyne say and how they say it.
+/// PacketDecoder works with any of these tables; a new model is a new table in sensor_table.cpp.
 namespace lilo {
 
 /// When the lasers of one firing cycle fire.
@@ -37,7 +37,7 @@ struct SensorTable {
   std::uint8_t product = 0;  ///< payload byte 1205; 0: its packets name no product (HDL-64E)
 
   int lasers = 0;
-  int banks = 1;          ///< blocks that hold the lasers of one firing cycle
+  int banks = 1;             ///< blocks that hold the lasers of one firing cycle
   int cycles_per_block = 1;  ///< VLP-16: two cycles of 16 lasers a block
   std::array<std::uint16_t, 4> bank_flags{wire::kUpperFlag};
   bool banks_fire_together = false;  ///< else one after the other
@@ -45,7 +45,7 @@ struct SensorTable {
   bool has_confidence = false;  ///< a dual return mode with a third block, which has no returns
 
   double distance_step_m = 0.002;
-  double max_range_m = 100.0;   ///< the data sheet's
+  double max_range_m = 100.0;    ///< the data sheet's
   double range_noise_m = 0.012;  ///< one sigma, for the simulator
   double min_rpm = 300.0, max_rpm = 1200.0;
 

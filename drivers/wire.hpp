@@ -31,7 +31,6 @@ inline constexpr std::uint16_t kPositionPort = 8308;
 inline constexpr int kTicksPerTurn = 36000;
 inline constexpr double kRadPerTick = 2.0 * std::numbers::pi / kTicksPerTurn;
 
-
 /// A VLP-16 may count past the hour before it wraps (ros-drivers/velodyne issue 218).
 inline constexpr std::uint32_t kMaxStampUs = 3'600'999'999U;
 

@@ -167,8 +167,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"YesIsNotTrue", "realtime:\n  lock_memory: yes\n",
                 "2:16: realtime.lock_memory: expected true or false, found yes"},
         BadCase{"UnknownChoice", "sensor:\n  model: vlp-16\n",
-                "2:10: sensor.model: expected one of auto, vlp16, hdl64e, found vlp-16; did you "
-                "mean vlp16?"},
+                "2:10: sensor.model: expected one of auto, vlp16, hdl64e, vlp32c, hdl32e, vls128, "
+                "found vlp-16; did you mean vlp16?"},
         BadCase{"NoValue", "udp:\n  data_port:\n",
                 "2:3: udp.data_port: expected a whole number from 1 to 65535, found nothing"},
         BadCase{"ListForNumber", "udp:\n  data_port: [1]\n",

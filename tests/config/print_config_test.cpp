@@ -134,8 +134,13 @@ TEST_P(ShippedFile, DiffersFromTheDefaultsInSensorAndSinkOnly) {
   EXPECT_EQ(shipped.publish.sinks, std::vector<std::string>{"127.0.0.1:9870"});
 }
 
-INSTANTIATE_TEST_SUITE_P(PrintConfig, ShippedFile, testing::Values("vlp16.yaml", "hdl64e.yaml"),
-                         [](const auto& test) { return std::string(test.param, 0, 5); });
+INSTANTIATE_TEST_SUITE_P(PrintConfig, ShippedFile,
+                         testing::Values("vlp16.yaml", "vlp32c.yaml", "hdl32e.yaml", "hdl64e.yaml",
+                                         "vls128.yaml"),
+                         [](const auto& test) {
+                           const std::string file = test.param;
+                           return file.substr(0, file.find('.'));
+                         });
 
 TEST(PrintReference, IsTheFileInTheRepository) {
   EXPECT_EQ(contents(kFolder + "/REFERENCE.md"), print_reference())

@@ -94,6 +94,12 @@ std::vector<test::TimedPacket> hdl64e(bool s3, test::Mode mode) {
                      turn);
 }
 
+std::vector<test::TimedPacket> row(SensorModel model, test::Mode mode) {
+  const test::RowOptions options{.model = model, .drive = {.rpm = 1200, .mode = mode}};
+  const int turn = static_cast<int>(50e3 / test::row_packet_us(options));
+  return blind_first(test::row_packets(4 * turn, options), turn);
+}
+
 class Allocation : public testing::TestWithParam<Case> {};
 
 TEST_P(Allocation, NoneAfterTheFirstRevolution) {
@@ -114,6 +120,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"vlp16_dual_strongest", [] { return vlp16(Mode::dual); },
                          ReturnChoice::strongest},
                     Case{"hi_res_dual", [] { return vlp16(Mode::dual, 0x24); }},
+                    Case{"vlp32c", [] { return row(SensorModel::vlp32c, Mode::strongest); }},
+                    Case{"vlp32c_dual", [] { return row(SensorModel::vlp32c, Mode::dual); }},
+                    Case{"hdl32e_dual", [] { return row(SensorModel::hdl32e, Mode::dual); }},
+                    Case{"vls128", [] { return row(SensorModel::vls128, Mode::strongest); }},
+                    Case{"vls128_dual", [] { return row(SensorModel::vls128, Mode::dual); }},
                     Case{"hdl64e_s2", [] { return hdl64e(false, Mode::strongest); }},
                     Case{"hdl64e_s2_dual", [] { return hdl64e(false, Mode::dual); }},
                     Case{"hdl64e_s3", [] { return hdl64e(true, Mode::strongest); }},

@@ -46,8 +46,12 @@ std::string record(const Bytes& file, std::size_t cell) {
 }
 
 bool is_packet(const std::string& data, std::size_t at) {
-  for (std::size_t b = 0; b < 12; ++b)
-    if (data.compare(at + 100 * b, 2, "\xFF\xEE", 2) != 0) return false;
+  const std::string banks = "\xEE\xDD\xCC\xBB";
+  for (std::size_t b = 0; b < 12; ++b) {
+    const std::size_t flag = at + 100 * b;
+    if (flag + 1 >= data.size() || data[flag] != '\xFF') return false;
+    if (banks.find(data[flag + 1]) == std::string::npos) return false;
+  }
   return true;
 }
 

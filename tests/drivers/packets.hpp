@@ -2,6 +2,7 @@
 
 #include "drivers/calibration.hpp"
 #include "drivers/scan_builder.hpp"
+#include "drivers/sensor_table.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -59,6 +60,18 @@ struct DriveOptions {
 /// `count` VLP-16 packets of the room. In dual mode the strongest echo is the glass.
 std::vector<TimedPacket> vlp16_packets(int count, const DriveOptions& options,
                                        std::uint8_t product = 0x22);
+
+/// Packets of the room as a sensor with 32 lasers a block sends them: VLP-32C, HDL-32E or VLS-128.
+/// Angles are those of the sensor's table, which real captures and `lilo sim` check; layout and
+/// times are the manuals'. In dual mode the strongest echo is the glass.
+struct RowOptions {
+  SensorModel model = SensorModel::vlp32c;
+  DriveOptions drive;
+  double vls128_cycle_us = 55.278;  ///< as a real unit was found to have it
+  std::uint8_t dual_byte = 0x39;    ///< 0x3B: with a third block a bank
+};
+std::vector<TimedPacket> row_packets(int count, const RowOptions& options);
+double row_packet_us(const RowOptions& options);
 
 struct HdlOptions {
   DriveOptions drive;

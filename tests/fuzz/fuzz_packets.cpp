@@ -57,6 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     size -= length;
   }
   const lilo::DriverCounts& c = builder.counts();
-  require(c.data_packets + c.position_packets + c.malformed_packets == fed);
+  require(c.data_packets + c.position_packets + c.malformed_packets + c.wrong_sensor_packets ==
+          fed);
   return 0;
 }

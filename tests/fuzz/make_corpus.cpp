@@ -8,6 +8,7 @@
 namespace {
 
 namespace fs = std::filesystem;
+using lilo::SensorModel;
 using namespace lilo::test;  // NOLINT(google-build-using-namespace): the encoders
 
 void write(const fs::path& file, const std::string& bytes) {
@@ -52,6 +53,20 @@ int main(int count, char** arguments) {
   vlp16.push_back(position);
   write(root / "packets/vlp16", stream(vlp16));
   write(root / "packets/vlp16_dual", stream(vlp16_packets(8, {.mode = Mode::dual})));
+  for (const SensorModel model : {SensorModel::vlp32c, SensorModel::hdl32e, SensorModel::vls128}) {
+    for (const Mode mode : {Mode::strongest, Mode::dual}) {
+      const RowOptions options{.model = model, .drive = {.mode = mode}};
+      const std::string name =
+          std::string(model == SensorModel::vlp32c
+                          ? "vlp32c"
+                          : (model == SensorModel::hdl32e ? "hdl32e" : "vls128")) +
+          (mode == Mode::dual ? "_dual" : "");
+      write(root / "packets" / name, stream(row_packets(6, options)));
+    }
+  }
+  RowOptions confirmed{.model = SensorModel::vls128, .drive = {.mode = Mode::dual}};
+  confirmed.dual_byte = 0x3B;
+  write(root / "packets/vls128_confirmed", stream(row_packets(6, confirmed)));
   const HdlOptions hdl{.calibration = sample_calibration(true), .without_returns = true};
   write(root / "packets/hdl64e", stream(hdl64e_packets(16, hdl)));
   write(root / "position/good", text_of(position.bytes).substr(0xC6, 100));

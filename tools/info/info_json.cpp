@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr std::array kModels = {"unknown", "vlp16", "hdl64e"};
+constexpr std::array kModels = {"unknown", "vlp16", "hdl64e", "vlp32c", "hdl32e", "vls128"};
 constexpr std::array kReturnModes = {"strongest", "last", "dual"};
 constexpr std::array kOrigins = {"none", "built_in", "file", "stored", "packets"};
 constexpr std::array kClocks = {"host", "gps", "replay"};
@@ -56,6 +56,7 @@ Json packets_json(const RecordingInfo& info) {
           {"waiting", driver.waiting_packets},
           {"malformed", driver.malformed_packets},
           {"other_sensor", driver.foreign_packets},
+          {"wrong_sensor", driver.wrong_sensor_packets},
           {"not_udp", source.foreign},
           {"truncated", source.truncated},
           {"fragments", source.fragments}};

@@ -1,3 +1,4 @@
+#include "drivers/sensor_table.hpp"
 #include "tools/info/info_report.hpp"
 
 #include <fmt/chrono.h>
@@ -13,7 +14,6 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::size_t kShownLosses = 8;
-constexpr std::uint8_t kHiResProduct = 0x24;
 
 std::string line(const char* label, const std::string& text) {
   return fmt::format("{:<13}{}\n", label, text);
@@ -53,10 +53,12 @@ std::string hdl64e_title(const SensorStatus& sensor) {
 
 std::string sensor_text(const RecordingInfo& info) {
   const SensorStatus& sensor = info.sensor;
-  if (sensor.model == SensorModel::automatic) return "unknown: no packet of a VLP-16 or HDL-64E";
-  std::string text = hdl64e_title(sensor);
-  if (sensor.model == SensorModel::vlp16)
-    text = sensor.product_id == kHiResProduct ? "VLP-16 Puck Hi-Res" : "VLP-16";
+  const bool refused = sensor.refused.packets > 0;
+  if (sensor.model == SensorModel::automatic)
+    return refused ? "packets of a sensor that is not known here: " + sensor.refused.name()
+                   : "unknown: no packet of a rotating Velodyne";
+  const SensorTable* table = find_product(sensor.product_id);
+  std::string text = table == nullptr ? hdl64e_title(sensor) : table->name;
   constexpr std::array kModes = {"strongest", "last", "dual"};
   std::string modes;
   for (std::size_t k = 0; k < kModes.size(); ++k) {
@@ -162,6 +164,8 @@ std::string trouble_text(const DriverCounts& driver) {
 std::string left_out_text(const RecordingInfo& info) {
   std::string text;
   add_count(text, info.driver_counts.malformed_packets, "malformed");
+  if (const RefusedSensor& refused = info.sensor.refused; refused.packets > 0)
+    add_count(text, refused.packets, ("of another model, last a " + refused.name()).c_str());
   add_count(text, info.driver_counts.foreign_packets, "of another sensor");
   add_count(text, info.source_counts.foreign, "not UDP");
   add_count(text, info.source_counts.truncated, "truncated");

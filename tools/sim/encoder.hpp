@@ -52,10 +52,10 @@ struct Rig {
   }
 };
 
-/// Distance in the 2 mm steps of all Velodyne sensors; 0 = no return.
-inline std::uint32_t distance_steps(double distance_m) {
+/// Distance in the steps of the sensor; 0 = no return.
+inline std::uint32_t distance_steps(double distance_m, double step_m = 0.002) {
   if (distance_m <= 0.0) return 0;
-  const double steps = std::floor(distance_m / 0.002 + 0.5);
+  const double steps = std::floor(distance_m / step_m + 0.5);
   return steps > 65535.0 ? 0 : static_cast<std::uint32_t>(steps);
 }
 

@@ -23,6 +23,12 @@ std::string sensor_name(Sensor sensor) {
       return "hdl64_s2";
     case Sensor::hdl64_s3:
       return "hdl64_s3";
+    case Sensor::vlp32c:
+      return "vlp32c";
+    case Sensor::hdl32e:
+      return "hdl32e";
+    case Sensor::vls128:
+      return "vls128";
   }
   return "unknown";
 }

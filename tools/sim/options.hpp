@@ -8,7 +8,7 @@
 
 namespace lilo::sim {
 
-enum class Sensor : std::uint8_t { vlp16, vlp16_hires, hdl64_s2, hdl64_s3 };
+enum class Sensor : std::uint8_t { vlp16, vlp16_hires, hdl64_s2, hdl64_s3, vlp32c, hdl32e, vls128 };
 enum class ReturnMode : std::uint8_t { strongest, last, dual };
 
 struct SensorOptions {

@@ -88,7 +88,10 @@ void add_sensor(CLI::App& command, SensorOptions& sensor) {
                        {{"vlp16", Sensor::vlp16},
                         {"vlp16-hires", Sensor::vlp16_hires},
                         {"hdl64-s2", Sensor::hdl64_s2},
-                        {"hdl64-s3", Sensor::hdl64_s3}},
+                        {"hdl64-s3", Sensor::hdl64_s3},
+                        {"vlp32c", Sensor::vlp32c},
+                        {"hdl32e", Sensor::hdl32e},
+                        {"vls128", Sensor::vls128}},
                        "Default: vlp16");
   group.choice<ReturnMode>("--returns", sensor.returns,
                            {{"strongest", ReturnMode::strongest},
@@ -102,8 +105,8 @@ void add_sensor(CLI::App& command, SensorOptions& sensor) {
       .number("--dropout", sensor.dropout, 0.0, 1.0,
               "Part of good echoes that is lost; faint ones are lost more. 0: every echo is seen")
       ->capture_default_str();
-  group.number("--max-range-m", sensor.max_range_m, 1.0, 130.0,
-               "No echo from beyond. Default: 100, HDL-64E 120");
+  group.number("--max-range-m", sensor.max_range_m, 1.0, 250.0,
+               "No echo from beyond. Default: 100, HDL-64E, VLP-32C and VLS-128 120");
   group.flag("--two-point", sensor.two_point, "HDL-64E: near ranges need the two-point correction");
   group.flag("--turning-block", sensor.turning_block,
              "HDL-64E: the head turns while a block fires; else a block has one azimuth");
@@ -206,7 +209,8 @@ void settle(const CLI::App& command, SimArguments& arguments) {
   }
   const bool hdl64 = sensor.sensor == Sensor::hdl64_s2 || sensor.sensor == Sensor::hdl64_s3;
   if (hdl64 && !given("--range-sigma-m")) sensor.range_sigma_m = 0.018;
-  if (hdl64 && !given("--max-range-m")) sensor.max_range_m = 120.0;
+  const bool far = hdl64 || sensor.sensor == Sensor::vlp32c || sensor.sensor == Sensor::vls128;
+  if (far && !given("--max-range-m")) sensor.max_range_m = 120.0;
   if (sensor.sensor == Sensor::hdl64_s2 && sensor.returns == ReturnMode::dual) {
     throw CLI::ValidationError("--returns", "the HDL-64E S2 has no dual return");
   }

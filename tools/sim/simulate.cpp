@@ -1,6 +1,7 @@
 #include "tools/sim/simulate.hpp"
 
 #include "tools/sim/addresses.hpp"
+#include "tools/sim/block_encoder.hpp"
 #include "tools/sim/hdl64_encoder.hpp"
 #include "tools/sim/meta_writer.hpp"
 #include "tools/sim/position_packet.hpp"
@@ -62,6 +63,10 @@ SensorClock make_clock(const SimOptions& options) {
 std::unique_ptr<Encoder> make_encoder(const SimOptions& options, const Rig& rig,
                                       const std::string& folder) {
   const SensorOptions& sensor = options.sensor;
+  if (const BlockSensor* model = find_block_sensor(sensor.sensor)) {
+    write_calibration_yaml(folder + "/calibration.yaml", block_calibration(*model), false);
+    return std::make_unique<BlockEncoder>(rig, *model);
+  }
   if (!is_hdl64(sensor.sensor)) {
     write_calibration_yaml(folder + "/calibration.yaml", vlp16_calibration(sensor.sensor), false);
     return std::make_unique<Vlp16Encoder>(rig);
