@@ -14,8 +14,9 @@ endif()
 install(DIRECTORY ${manuals}/lilod/ DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT lilod OPTIONAL)
 install(DIRECTORY ${manuals}/lilo-tools/ DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT lilo-tools
   OPTIONAL)
-install(FILES ${PROJECT_SOURCE_DIR}/config/vlp16.yaml ${PROJECT_SOURCE_DIR}/config/hdl64e.yaml
-  DESTINATION /etc/lilod COMPONENT lilod)
+foreach(sensor vlp16 vlp32c hdl32e hdl64e vls128)
+  install(FILES ${PROJECT_SOURCE_DIR}/config/${sensor}.yaml DESTINATION /etc/lilod COMPONENT lilod)
+endforeach()
 foreach(package lilod lilo-tools lilod-dev python3-lilo)
   install(FILES debian/copyright ${CMAKE_BINARY_DIR}/changelog.gz DESTINATION ${doc}/${package}
     COMPONENT ${package})
