@@ -15,8 +15,9 @@ CalibrationKeeper::CalibrationKeeper(boost::asio::io_context& io, const Receiver
 void CalibrationKeeper::look() {
   const std::uint64_t read = receiver_.calibrations_read();
   if (directory_.empty() || read == kept_ || saver_.busy()) return;
-  Calibration calibration;
-  if (!receiver_.calibration().load(calibration)) return;  // overtaken: in a second
+  CalibrationTable table;
+  if (!receiver_.calibration().load(table)) return;  // overtaken: in a second
+  const Calibration calibration = table.calibration();
   kept_ = read;
   saver_.write(
       stored_calibration_path(directory_), calibration.lasers.size(),

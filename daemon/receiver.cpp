@@ -46,11 +46,11 @@ void Receiver::share_state() {
 }
 
 void Receiver::share_calibration(const SensorStatus& status) {
-  const Calibration* const table = builder_.calibration();
-  if (status.calibration != CalibrationOrigin::packets || table == nullptr ||
-      *table == last_calibration_)
-    return;
-  last_calibration_ = *table;
+  const Calibration* const calibration = builder_.calibration();
+  if (status.calibration != CalibrationOrigin::packets || calibration == nullptr) return;
+  const CalibrationTable table(*calibration);
+  if (table == last_calibration_) return;
+  last_calibration_ = table;
   calibration_.store(last_calibration_);
   calibrations_read_.store(calibrations_read_.load() + 1);
 }

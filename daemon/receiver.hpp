@@ -1,10 +1,10 @@
 #pragma once
 
 #include "core/feature_extractor.hpp"
+#include "daemon/calibration_table.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/snapshot.hpp"
 #include "daemon/wakeup.hpp"
-#include "drivers/calibration.hpp"
 #include "drivers/packet_source.hpp"
 #include "drivers/scan_builder.hpp"
 #include "drivers/sensor_config.hpp"
@@ -39,7 +39,7 @@ class Receiver : private ScanSink {
   [[nodiscard]] const Snapshot<ReceiverState>& state() const { return state_; }
   /// Any thread: tables read from the packets of an HDL-64E so far, and the last of them.
   [[nodiscard]] std::uint64_t calibrations_read() const { return calibrations_read_.load(); }
-  [[nodiscard]] const Snapshot<Calibration>& calibration() const { return calibration_; }
+  [[nodiscard]] const Snapshot<CalibrationTable>& calibration() const { return calibration_; }
   /// Any thread: monotonic time of the last packet that was read; 0: none yet.
   [[nodiscard]] std::int64_t last_packet_ns() const { return last_packet_ns_.load(); }
   /// Any thread: monotonic time at which the last scan was complete; 0: none yet.
@@ -63,9 +63,9 @@ class Receiver : private ScanSink {
   std::atomic<std::int64_t> last_packet_ns_{0};
   std::atomic<std::int64_t> last_scan_ns_{0};
   Snapshot<ReceiverState> state_;
-  Calibration last_calibration_;  // that was shared
+  CalibrationTable last_calibration_;  // that was shared
   std::atomic<std::uint64_t> calibrations_read_{0};
-  Snapshot<Calibration> calibration_;
+  Snapshot<CalibrationTable> calibration_;
   ScanBuilder builder_;
 };
 
