@@ -1,7 +1,7 @@
 #include "config/config.hpp"
 #include "config/print_config.hpp"
-#include "daemon/health_monitor.hpp"
 #include "config/version.hpp"
+#include "daemon/health_monitor.hpp"
 #include "daemon/log.hpp"
 #include "daemon/service.hpp"
 

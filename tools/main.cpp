@@ -13,9 +13,9 @@
 #include "tools/run/run_command.hpp"
 #include "tools/save/save_command.hpp"
 #include "tools/sim/sim_command.hpp"
-#include "tools/view/view_command.hpp"
 #include "tools/status/status_command.hpp"
 #include "tools/top/top_command.hpp"
+#include "tools/view/view_command.hpp"
 
 #include <CLI/CLI.hpp>
 

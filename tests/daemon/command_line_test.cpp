@@ -36,7 +36,8 @@ TEST(CommandLine, UnknownOptionIsRefused) {
 }
 
 TEST(CommandLine, ChecksTheShippedFiles) {
-  for (const char* name : {"/vlp16.yaml", "/vlp32c.yaml", "/hdl32e.yaml", "/hdl64e.yaml", "/vls128.yaml"}) {
+  for (const char* name :
+       {"/vlp16.yaml", "/vlp32c.yaml", "/hdl32e.yaml", "/hdl64e.yaml", "/vls128.yaml"}) {
     const std::string path = std::string(LILO_CONFIG_DIR) + name;
     const Finished run = run_to_end({kLilod, "--check-config", "--config", path});
     EXPECT_EQ(run.exit_code, 0) << run.error;

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iterator>
 #include <numbers>
+#include <string>
+#include <unistd.h>
 
 namespace lilo {
 namespace {
@@ -31,7 +33,7 @@ std::string refusal(const std::string& text) {
 }
 
 std::string good_yaml() {
-  const std::string path = testing::TempDir() + "/good.yaml";
+  const std::string path = testing::TempDir() + "/good" + std::to_string(getpid()) + ".yaml";
   EXPECT_TRUE(store_calibration(path, test::sample_calibration(true)));
   return text_of(path);
 }

@@ -4,8 +4,8 @@
 #include "tools/bench/paper/paper_bench.hpp"
 #include "tools/bench/worlds/worlds_command.hpp"
 #include "tools/cli.hpp"
-#include "tools/terminal/progress_bar.hpp"
 #include "tools/stop_signals.hpp"
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/tool_config.hpp"
 
 #include <fmt/format.h>

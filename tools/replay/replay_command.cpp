@@ -1,9 +1,9 @@
 #include "tools/replay/replay_command.hpp"
 
 #include "tools/cli.hpp"
-#include "tools/terminal/progress_bar.hpp"
 #include "tools/replay/player.hpp"
 #include "tools/stop_signals.hpp"
+#include "tools/terminal/progress_bar.hpp"
 
 #include <fmt/format.h>
 

@@ -7,8 +7,8 @@
 #include "tools/run/odometry_run.hpp"
 #include "tools/run/pose_log.hpp"
 #include "tools/run/run_report.hpp"
-#include "tools/terminal/progress_bar.hpp"
 #include "tools/run/voxel_map.hpp"
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/text_file.hpp"
 #include "tools/tool_config.hpp"
 

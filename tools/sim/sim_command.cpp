@@ -1,9 +1,9 @@
 #include "tools/sim/sim_command.hpp"
 
-#include "tools/terminal/progress_bar.hpp"
 #include "tools/sim/sim_options.hpp"
 #include "tools/sim/simulate.hpp"
 #include "tools/sim/world.hpp"
+#include "tools/terminal/progress_bar.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 
 #include "config/print_config.hpp"
 #include "tools/bench/paper/ledger.hpp"
-#include "tools/terminal/progress_bar.hpp"
 #include "tools/stop_signals.hpp"
+#include "tools/terminal/progress_bar.hpp"
 #include "tools/text_file.hpp"
 
 #include <fmt/format.h>

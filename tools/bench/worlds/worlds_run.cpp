@@ -1,7 +1,7 @@
 #include "tools/bench/worlds/worlds_run.hpp"
 
-#include "tools/terminal/progress_bar.hpp"
 #include "tools/stop_signals.hpp"
+#include "tools/terminal/progress_bar.hpp"
 
 #include <fmt/format.h>
 
