@@ -43,7 +43,7 @@ class Publisher {
   void send_pose(const PoseReport& report);
   void send_points();
   void send_points_of(PointsReport& report);
-  void save(SaveKind kind, const SaveDone& done);
+  void save(SaveKind kind, const SaveDone& answer);
   void save_trajectory(const SaveDone& done);
   void save_map(MapCopy map);
   void follow_session(const PoseReport& report);

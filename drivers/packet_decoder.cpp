@@ -43,7 +43,8 @@ void PacketDecoder::use(const SensorTable& table) {
   cycles_seen_ = 0;
   instant_count_ = 0;
   mean_ticks_per_ns_ = 0.0;
-  angle_count_ = static_cast<std::size_t>(table.lasers * table.cycles_per_block);
+  angle_count_ =
+      static_cast<std::size_t>(table.lasers) * static_cast<std::size_t>(table.cycles_per_block);
   use_times(table.times.size() == 1 ? &table.times.front() : nullptr);
   if (!table.elevation_deg.empty()) use_calibration(built_in_calibration(table));
 }

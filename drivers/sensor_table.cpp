@@ -182,8 +182,8 @@ constexpr auto kByProduct = by_product();  // asked for every packet
 std::span<const SensorTable* const> sensor_tables() { return kAll; }
 
 const SensorTable* find_sensor(SensorModel model) {
-  const auto found = std::find_if(kAll.begin(), kAll.end(),
-                                  [&](const SensorTable* table) { return table->model == model; });
+  const auto* const found = std::find_if(
+      kAll.begin(), kAll.end(), [&](const SensorTable* table) { return table->model == model; });
   return found == kAll.end() ? nullptr : *found;
 }
 

@@ -55,8 +55,8 @@ void LocalOdometry::move_to(const MotionState& state) {
 
 WeakDirections LocalOdometry::find_weak_directions(const ScanTiming& scan,
                                                    const Solution& solution) {
-  const WeakDirections weak = weak_directions(
-      solution.data_information, solution.motion_information, state_.T_odom_sensor.rotation);
+  WeakDirections weak = weak_directions(solution.data_information, solution.motion_information,
+                                        state_.T_odom_sensor.rotation);
   uncertainty_.learn(weak, state_, process_noise_.density(), scan.span_s());
   return weak;
 }
@@ -75,7 +75,7 @@ void LocalOdometry::grow_map(const ScanTiming& scan, const std::vector<Feature>&
 }
 
 Pose LocalOdometry::begin_map() {
-  const Pose at = state_.T_odom_sensor;
+  Pose at = state_.T_odom_sensor;
   uncertainty_.begin_map(state_);
   process_noise_.interrupt();
   standing_.end();
