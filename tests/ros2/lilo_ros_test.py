@@ -72,6 +72,17 @@ class LiloRos(unittest.TestCase):
         for place, variance in enumerate([0.02, 0.01, 0.03, 0.05, 0.04, 0.06]):
             self.assertAlmostEqual(message.pose.covariance[7 * place], variance)
 
+    def test_every_covariance_is_about_the_axes_of_the_parent(self):
+        # By hand, for a quarter turn to the left: x of the parent is -y of the child, y is its x.
+        of_child = ((1, -1), (0, 1), (2, 1), (4, -1), (3, 1), (5, 1))  # axis, sign
+        told = [1.0 + 0.1 * (k // 6) + 0.01 * (k % 6) for k in range(36)]
+        self.run_bridge(pose(orientation=LEFT, covariance=told))
+        (message,) = self.on("odom")
+        for row, (i, row_sign) in enumerate(of_child):
+            for column, (j, column_sign) in enumerate(of_child):
+                self.assertAlmostEqual(message.pose.covariance[6 * row + column],
+                                       row_sign * column_sign * told[6 * i + j])
+
     def test_a_transform_comes_with_it(self):
         self.run_bridge(pose(orientation=LEFT))
         (message,) = self.on("/tf")

@@ -67,8 +67,8 @@ set(CPACK_DEBIAN_LILOD-DEV_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_LILOD-DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LILOD-DEV_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_LILOD-DEV_DESCRIPTION "client of the LiDAR odometry daemon lilod
- A C++ header that receives the poses lilod sends, and examples in C++, in
- Python and as a bridge to ROS 2.")
+ A C++ header that receives the poses lilod sends, examples in C++ and in
+ Python, and the ROS 2 package lilo_ros.")
 set(CPACK_DEBIAN_LILOD-DEV_PACKAGE_SUGGESTS python3-lilo)
 
 set(CPACK_DEBIAN_PYTHON3-LILO_PACKAGE_NAME python3-lilo)
