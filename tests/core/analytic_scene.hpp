@@ -66,6 +66,17 @@ inline Scene yard(double height_m = 1.5) {
   return scene;
 }
 
+/// A road along x, its ground at z = -1.8 m, with posts on both sides at uneven distances.
+inline Scene road_with_posts() {
+  Scene road;
+  road.planes = {{{0.0, 0.0, 1.0}, -1.8}};
+  for (int k = 0; k < 24; ++k) {
+    const double along_m = -100.0 + 11.0 * k + 3.0 * std::sin(2.0 * k);
+    road.poles.push_back({along_m, k % 2 == 0 ? 9.0 : -7.0, 0.25, 3.0});
+  }
+  return road;
+}
+
 inline BeamTable even_beams(int rings, double lowest_deg, double highest_deg) {
   BeamTable beams;
   beams.ring_count = rings;

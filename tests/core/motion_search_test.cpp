@@ -11,16 +11,6 @@ namespace {
 
 constexpr std::size_t kMost = 40000;
 
-test::Scene road_with_posts() {
-  test::Scene road;
-  road.planes = {{{0.0, 0.0, 1.0}, -1.8}};
-  for (int k = 0; k < 24; ++k) {
-    const double along_m = -100.0 + 11.0 * k + 3.0 * std::sin(2.0 * k);
-    road.poles.push_back({along_m, k % 2 == 0 ? 9.0 : -7.0, 0.25, 3.0});
-  }
-  return road;
-}
-
 void add_scans(MotionSearch& search, const test::Scene& scene, double speed_mps, int count) {
   for (int k = 0; k < count; ++k) {
     const auto index = static_cast<std::uint64_t>(k);
@@ -32,7 +22,7 @@ void add_scans(MotionSearch& search, const test::Scene& scene, double speed_mps,
 TEST(MotionSearch, FindsTheSpeedOfAStartInMotion) {
   for (const double speed_mps : {5.0, 15.0, 28.0}) {
     MotionSearch search(kMost);
-    add_scans(search, road_with_posts(), speed_mps, 4);
+    add_scans(search, test::road_with_posts(), speed_mps, 4);
     const MotionSearch::Result result = search.find();
     EXPECT_TRUE(result.moves) << speed_mps;
     EXPECT_NEAR(result.twist.linear_mps.x(), speed_mps, 0.5);
@@ -64,7 +54,7 @@ TEST(MotionSearch, SaysThatEvenlySpacedPostsAreAmbiguous) {
 
 TEST(MotionSearch, RefinesAMotionThatIsNearlyRight) {
   MotionSearch search(kMost);
-  add_scans(search, road_with_posts(), 15.0, 5);
+  add_scans(search, test::road_with_posts(), 15.0, 5);
   Twist about;
   about.linear_mps = {14.3, 0.4, 0.0};
   const Twist refined = search.refine(about, Subsample::all);
@@ -74,7 +64,7 @@ TEST(MotionSearch, RefinesAMotionThatIsNearlyRight) {
 
 TEST(MotionSearch, PrefersTheTrueMotionToAFalseTrackAndNotTheOtherWayRound) {
   MotionSearch search(kMost);
-  add_scans(search, road_with_posts(), 15.0, 4);
+  add_scans(search, test::road_with_posts(), 15.0, 4);
   const auto track_at = [](double speed_mps) {
     std::array<MotionSearch::Track, 4> track;
     for (std::size_t k = 0; k < track.size(); ++k) {

@@ -15,16 +15,6 @@ namespace {
 
 constexpr double kSpan_s = 0.1;
 
-test::Scene road_with_posts() {
-  test::Scene road;
-  road.planes = {{{0.0, 0.0, 1.0}, -1.8}};
-  for (int k = 0; k < 24; ++k) {
-    const double along_m = -100.0 + 11.0 * k + 3.0 * std::sin(2.0 * k);
-    road.poles.push_back({along_m, k % 2 == 0 ? 9.0 : -7.0, 0.25, 3.0});
-  }
-  return road;
-}
-
 /// Two scans from a sensor in constant motion, as features; the first firing of the first one is
 /// from the origin.
 std::vector<std::vector<Feature>> two_scans(const Twist& twist) {
@@ -32,7 +22,7 @@ std::vector<std::vector<Feature>> two_scans(const Twist& twist) {
   std::vector<std::vector<Feature>> scans;
   for (int k = 0; k < 2; ++k) {
     const Scan scan = test::scan_of(
-        road_with_posts(), test::even_beams(16, -15.0, 15.0), 900,
+        test::road_with_posts(), test::even_beams(16, -15.0, 15.0), 900,
         [&](double s) {
           const double t_s = kSpan_s * (k + s);
           return Pose{so3_exp(t_s * twist.angular_radps), t_s * twist.linear_mps};

@@ -1,0 +1,127 @@
+#include "core/tracking/pose_uncertainty.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace lilo::core {
+namespace {
+
+// A scan counts its residuals by this weight, and three scans share the error of a cell: the
+// variance by independent residuals counts 0.3 times for each unit of the design effect.
+constexpr double kDataWeight = 0.1, kUnit = 3.0 * kDataWeight;
+constexpr double kLeastDesignEffect = 0.05;
+constexpr int kOldMap = 100;  // keyframes: each is a thirteenth of what is seen
+
+const Eigen::Quaterniond kLeft(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
+
+/// A state whose pose has these variances by its information (rotation, translation).
+MotionState state_of(const Vector6d& variance) {
+  MotionState state;
+  state.information = KnotInformation::Identity();
+  state.information.topLeftCorner<6, 6>().diagonal() = variance.cwiseInverse();
+  return state;
+}
+
+MotionState exact_state() { return state_of(Vector6d::Constant(1e-18)); }
+
+Vector6d six(double rx, double ry, double rz, double x, double y, double z) {
+  Vector6d v;
+  v << rx, ry, rz, x, y, z;
+  return v;
+}
+
+/// A direction, translation first, of which a scan says nothing.
+WeakDirections weak_along(const Vector6d& direction) {
+  WeakDirections weak;
+  weak.count = 1;
+  weak.all[0].direction = direction;
+  return weak;
+}
+
+TEST(PoseUncertainty, AnAlignmentCountsByItsDesignEffect) {
+  const Vector6d variance = six(1e-6, 2e-6, 3e-6, 4e-4, 5e-4, 6e-4);
+  const Vector6d effect = six(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
+  PoseUncertainty uncertainty(kDataWeight);
+  for (int scan = 1; scan <= 30; ++scan) {
+    uncertainty.learn(effect);
+    // A running mean in which the newest scan has a tenth, from the least on.
+    const Vector6d mean =
+        effect.array() + (kLeastDesignEffect - effect.array()) * std::pow(0.9, scan);
+    const Matrix6d covariance = uncertainty.covariance(state_of(variance));
+    for (int k = 0; k < 6; ++k)
+      EXPECT_NEAR(covariance(k, k) / (kUnit * mean[k] * variance[k]), 1.0, 1e-9) << k;
+  }
+}
+
+TEST(PoseUncertainty, ASimulationWithoutNoiseIsNoReasonToBeSure) {
+  PoseUncertainty uncertainty(kDataWeight);
+  for (int scan = 0; scan < 1000; ++scan) uncertainty.learn(Vector6d::Zero());
+  const Matrix6d covariance = uncertainty.covariance(state_of(Vector6d::Constant(1e-4)));
+  EXPECT_NEAR(covariance(3, 3), kUnit * kLeastDesignEffect * 1e-4, 1e-12);
+}
+
+TEST(PoseUncertainty, IsInTheSensorsAxes) {
+  MotionState state = state_of(six(1e-6, 1e-6, 1e-6, 9e-4, 1e-4, 1e-4));
+  state.T_odom_sensor.rotation = kLeft;
+  const Matrix6d covariance = PoseUncertainty(kDataWeight).covariance(state);
+  EXPECT_NEAR(covariance(4, 4) / covariance(3, 3), 9.0, 1e-9);  // odometry's x is on its right
+}
+
+// Of a keyframe's standard error a thirteenth is handed on, and half as much again is steady.
+TEST(PoseUncertainty, AKeyframeHandsOnItsError) {
+  const MotionState aligned = state_of(Vector6d::Constant(1e-4));
+  const double alignment = kUnit * kLeastDesignEffect * 1e-4;
+  PoseUncertainty old_map(kDataWeight), young_map(kDataWeight);
+  old_map.add_keyframe(aligned, kOldMap);
+  young_map.add_keyframe(aligned, 1);  // counts as the fourth
+  const auto part_of = [&](const PoseUncertainty& uncertainty) {
+    return uncertainty.covariance(exact_state())(3, 3) / alignment;
+  };
+  EXPECT_NEAR(part_of(old_map), 1.25 / (13.0 * 13.0), 1e-9);
+  EXPECT_NEAR(part_of(young_map), 1.25 / (4.0 * 4.0), 1e-9);
+}
+
+TEST(PoseUncertainty, AnotherMapBeginsAsUncertainAsThePoseWas) {
+  PoseUncertainty uncertainty(kDataWeight);
+  const double yaw = 1e-4 / (kUnit * kLeastDesignEffect);  // 0.01 rad, 1 sigma
+  uncertainty.begin_map(state_of(six(1e-18, 1e-18, yaw, 1e-18, 1e-18, 1e-18)));
+  const Matrix6d at_start = uncertainty.covariance(exact_state());
+  EXPECT_NEAR(at_start(2, 2), 1e-4, 1e-12);
+  EXPECT_NEAR(at_start(4, 4), 0.0, 1e-12);
+  uncertainty.move({100.0, 0.0, 0.0});
+  const Matrix6d ahead = uncertainty.covariance(exact_state());
+  EXPECT_NEAR(ahead(4, 4), 1.0, 1e-9);  // 0.01 rad of 100 m
+  EXPECT_NEAR(ahead(3, 3), 0.0, 1e-9);
+  uncertainty.rewind();
+  EXPECT_TRUE(uncertainty.covariance(exact_state()).isApprox(at_start));
+}
+
+// A position under white noise q on acceleration is uncertain by q t^3 / 3.
+TEST(PoseUncertainty, AWeakDirectionIsDeadReckoned) {
+  constexpr double kScan_s = 0.01;
+  const Vector6d density = six(0.3, 0.3, 0.3, 2.0, 4.0, 100.0);  // 3 on the ground plane
+  MotionState state = exact_state();
+  state.T_odom_sensor.rotation = kLeft;
+  PoseUncertainty uncertainty(kDataWeight);
+  for (int scan = 0; scan < 1000; ++scan)
+    uncertainty.learn(weak_along(six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0)), state, density, kScan_s);
+  const Matrix6d of_sensor = uncertainty.covariance(state);
+  EXPECT_NEAR(of_sensor(3, 3) / (3.0 * 1000.0 / 3.0), 1.0, 0.01);
+  EXPECT_NEAR(of_sensor(4, 4), 0.0, 1e-9);
+  // To the odometry, ahead of that sensor is y.
+  const Matrix6d of_odometry = uncertainty.covariance(exact_state());
+  EXPECT_NEAR(of_odometry(4, 4), of_sensor(3, 3), 1e-9);
+}
+
+TEST(PoseUncertainty, WeaknessThatMostlyTurnsIsNotDeadReckoned) {
+  PoseUncertainty uncertainty(kDataWeight);
+  const Vector6d density = Vector6d::Ones();
+  uncertainty.learn(weak_along(six(0.28, 0.0, 0.0, 0.0, 0.0, 0.96)), exact_state(), density, 0.1);
+  uncertainty.learn(WeakDirections{}, exact_state(), density, 0.1);
+  EXPECT_NEAR(uncertainty.covariance(exact_state())(3, 3), 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace lilo::core
