@@ -67,18 +67,16 @@ void FeatureImage::begin(const BeamTable& beams) {
     if (features->capacity() < size) features->resize(size);  // touches it all
     features->clear();
   }
-  first_column_ = -1;
-  front_ = classified_ = 0;
-  invalidated_ = false;
+  sweep_ = {};
 }
 
 void FeatureImage::add(std::span<const Return> returns) {
   project(returns);
-  if (!invalidated_) classify_until(front_ - margin_);
+  if (!sweep_.invalidated) classify_until(sweep_.front - margin_);
 }
 
 std::vector<Feature>& FeatureImage::finish(const Scan& scan) {
-  if (invalidated_ || classified_ == 0) {
+  if (sweep_.invalidated || sweep_.classified == 0) {
     features_.clear();
     for (int column = 0; column < columns_; ++column) classify_column(column, features_);
   } else {
@@ -94,8 +92,8 @@ std::vector<Feature>& FeatureImage::finish(const Scan& scan) {
 }
 
 void FeatureImage::classify_until(int place) {
-  for (; classified_ < place; ++classified_) {
-    const int column = first_column_ + classified_;
+  for (; sweep_.classified < place; ++sweep_.classified) {
+    const int column = sweep_.first_column + sweep_.classified;
     if (column < columns_) {
       classify_column(column, last_features_);
     } else {

@@ -70,6 +70,14 @@ class FeatureImage {
     std::array<float, kMaxRings + 3> length2_m2;
     std::array<std::int32_t, kMaxRings + 3> flat, steep;  ///< 1 or 0
   };
+  /// How far the sensor has turned. A column's place counts from `first_column`, in the order in
+  /// which the sensor passes them.
+  struct Sweep {
+    int first_column = -1;     ///< -1: no return yet
+    int front = 0;             ///< the farthest place before the seam that a return fell into
+    int classified = 0;        ///< places before this one are done
+    bool invalidated = false;  ///< and one of them got another return
+  };
   struct Projector;  // in feature_image_project.cpp
   static float columns_per_rad(int columns);
   void project(std::span<const Return> returns);
@@ -97,12 +105,7 @@ class FeatureImage {
   RingEdges edges_;  // of the column in hand
   std::vector<Feature> features_;
   std::vector<Feature> last_features_;  // of columns to the right of straight behind
-
-  // A column's place counts from `first_column_`, in the order in which the sensor passes them.
-  int first_column_ = -1;     // -1: no return yet
-  int front_ = 0;             // the farthest place before the seam that a return fell into
-  int classified_ = 0;        // places before this one are done
-  bool invalidated_ = false;  // and one of them got another return
+  Sweep sweep_;
 };
 
 }  // namespace lilo::core

@@ -58,7 +58,7 @@ void FeatureImage::project(std::span<const Return> returns) {
 }
 
 /// Where there are more returns than pixels, a processor cannot foretell which ones are taken. So
-/// those that are free are view first, without a branch.
+/// those whose pixel is free are listed first, without a branch.
 void FeatureImage::project_crowded(const Projector& projector, std::span<const Return> returns) {
   constexpr std::size_t kAtATime = 48;  // fewer than a firing has: hardly two are for one pixel
   std::array<std::uint32_t, kAtATime> at, columns;
@@ -80,14 +80,15 @@ void FeatureImage::project_crowded(const Projector& projector, std::span<const R
 
 /// A return fell into an empty pixel of the column.
 void FeatureImage::note(int column) {
-  if (first_column_ < 0) first_column_ = (column + margin_) % columns_;
+  if (sweep_.first_column < 0) sweep_.first_column = (column + margin_) % columns_;
   const int place = place_of(column);
-  if (place <= classified_ && classified_ > 0) invalidated_ = true;  // or looked at from beside
-  if (place < columns_ - 2 * margin_ && place > front_) front_ = place;
+  // Or the column was looked at from the one beside it.
+  if (place <= sweep_.classified && sweep_.classified > 0) sweep_.invalidated = true;
+  if (place < columns_ - 2 * margin_ && place > sweep_.front) sweep_.front = place;
 }
 
 int FeatureImage::place_of(int column) const {
-  const int place = column - first_column_;
+  const int place = column - sweep_.first_column;
   return place < 0 ? place + columns_ : place;
 }
 
