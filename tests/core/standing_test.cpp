@@ -91,7 +91,8 @@ test::Scene jam(double t_s, double acceleration_mps2) {
   return scene;
 }
 
-TEST(Standing, InAJamTheSensorStaysWhereItIs) {
+// More of the structure stands than sets off. That alone holds the sensor, without the hypothesis.
+TEST(Jam, ASensorAtRestStaysWhereMoreStandsThanSetsOff) {
   for (const double acceleration_mps2 : {0.3, 1.0}) {
     Odometry odometry{OdometryConfig{}};
     double farthest_m = 0.0;
