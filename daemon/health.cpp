@@ -1,6 +1,7 @@
 #include "daemon/health.hpp"
 
 #include "daemon/complaints.hpp"
+#include "daemon/message_head.hpp"
 #include "daemon/pose_message.hpp"
 
 #include <fmt/format.h>
@@ -104,10 +105,7 @@ void write_state(JsonWriter& out, const Health& h, const Room& room) {
 
 std::string_view write(const std::string& session, const Health& h, const Room& room,
                        JsonWriter& out) {
-  out = JsonWriter();
-  out.text("v", kProtocolVersion);
-  out.seconds("timestamp", h.stamp_ns);
-  out.text("session", session);
+  begin_message(out, h.stamp_ns, session);
   out.begin_object("health");
   write_state(out, h, room);
   write_packets(out, h);

@@ -1,6 +1,6 @@
 #include "daemon/points_message.hpp"
 
-#include "daemon/pose_message.hpp"
+#include "daemon/message_head.hpp"
 
 #include <algorithm>
 #include <array>
@@ -44,10 +44,7 @@ std::string_view write_points(const PointsContext& context, PointSet set,
     encode(p_m, text.data() + size);
     size += kBase64PerPoint;
   }
-  out = JsonWriter();
-  out.text("v", kProtocolVersion);
-  out.seconds("timestamp", context.stamp_ns);
-  out.text("session", context.session);
+  begin_message(out, context.stamp_ns, context.session);
   out.unsigned_integer("seq", context.seq);
   out.begin_object("points");
   out.text("of", set == PointSet::scan ? "scan" : "map");

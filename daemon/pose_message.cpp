@@ -1,5 +1,7 @@
 #include "daemon/pose_message.hpp"
 
+#include "daemon/message_head.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -90,10 +92,7 @@ enum class Optional { covariance_and_weak, weak_alone, none };
 std::string_view write(const PoseMessageContext& context, const PoseReport& report,
                        std::int64_t now_ns, Optional optional, JsonWriter& out) {
   const Estimate& estimate = report.estimate;
-  out = JsonWriter();
-  out.text("v", kProtocolVersion);
-  out.seconds("timestamp", estimate.stamp_ns);
-  out.text("session", context.session);
+  begin_message(out, estimate.stamp_ns, context.session);
   out.unsigned_integer("seq", report.seq);
   out.begin_object("pose");
   write_stamp(out, estimate.stamp_ns);

@@ -8,9 +8,6 @@
 
 namespace lilo {
 
-/// Version of the protocol, PROTOCOL.md. Minor: something was added. Major: something changed.
-inline constexpr const char* kProtocolVersion = "2.0";
-
 const char* to_string(TrackingStatus status);
 
 /// Sixteen hexadecimal digits: a gap in seq within one session is a loss, a new session has another

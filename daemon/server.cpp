@@ -1,7 +1,7 @@
 #include "daemon/server.hpp"
 
 #include "daemon/clock.hpp"
-#include "daemon/pose_message.hpp"
+#include "daemon/message_head.hpp"
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/address.hpp>
@@ -183,12 +183,7 @@ void Server::answer_query(const std::string& query) {
   }
 }
 
-void Server::begin(JsonWriter& out) {
-  out = JsonWriter();
-  out.text("v", kProtocolVersion);
-  out.seconds("timestamp", realtime_ns());
-  out.text("session", actions_.session());
-}
+void Server::begin(JsonWriter& out) { begin_message(out, realtime_ns(), actions_.session()); }
 
 void Server::say_hello(double ttl_s, bool points) {
   begin(json_);

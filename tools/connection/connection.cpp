@@ -1,6 +1,6 @@
 #include "tools/connection/connection.hpp"
 
-#include "daemon/pose_message.hpp"
+#include "daemon/message_head.hpp"
 
 #include <boost/asio/buffer.hpp>
 #include <fmt/format.h>
