@@ -23,6 +23,7 @@
 #include <sys/socket.h>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 #if !defined(__cpp_lib_to_chars)
 #include <locale>
@@ -71,13 +72,11 @@ class FlatJson {
   /// NaN when there is none. Never by the locale: where the comma is the decimal sign, strtod reads
   /// 38.172 as 38.
   double number(const std::string& path) const {
-    const std::string digits = text(path);
-    double out = std::nan("");
+    double out = 0.0;
 #if defined(__cpp_lib_to_chars)
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
-    const bool whole = error == std::errc{} && end == digits.data() + digits.size();
+    const bool whole = read(text(path), out);
 #else
-    std::istringstream in(digits);
+    std::istringstream in(text(path));
     in.imbue(std::locale::classic());
     const bool whole = (in >> out) && in.peek() == std::istringstream::traits_type::eof();
 #endif
@@ -86,23 +85,20 @@ class FlatJson {
   /// False, and `out` untouched, when it is no whole number or does not fit.
   template <typename Integer>
   bool integer(const std::string& path, Integer& out) const {
-    const std::string digits = text(path);
-    Integer read{};
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), read);
-    if (error != std::errc{} || digits.empty() || end != digits.data() + digits.size())
-      return false;
-    out = read;
-    return true;
+    return read(text(path), out);
   }
 
  private:
-  void skip() {
-    while (at_ < text_.size() && is_one_of(text_[at_], " \t\r\n")) ++at_;
+  template <typename Number>
+  static bool read(const std::string& digits, Number& out) {
+    Number found{};
+    const char* const last = digits.data() + digits.size();
+    const auto [end, error] = std::from_chars(digits.data(), last, found);
+    if (error != std::errc{} || end != last) return false;
+    out = found;
+    return true;
   }
-  static bool is_one_of(char c, const char* set) {
-    while (*set != '\0' && *set != c) ++set;
-    return *set != '\0';
-  }
+  void skip() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }
   bool take(char c) {
     skip();
     if (at_ >= text_.size() || text_[at_] != c) return false;
@@ -167,8 +163,8 @@ class FlatJson {
     skip();
     if (at_ < text_.size() && text_[at_] == '"') return string(scalars_[path]);
     const std::size_t start = at_;
-    while (at_ < text_.size() && is_one_of(text_[at_], "+-.0123456789abcdefghijklmnopqrstuvwxyzE"))
-      ++at_;
+    at_ = std::min(text_.find_first_not_of("+-.0123456789abcdefghijklmnopqrstuvwxyzE", at_),
+                   text_.size());
     scalars_[path] = text_.substr(start, at_ - start);
     return at_ > start;
   }
@@ -278,15 +274,15 @@ class Client {
     return poll(&ready, 1, static_cast<int>(std::max<long long>(left, 0))) > 0;
   }
 
+  // Members with names of one letter, or items of an array. Whether all are numbers.
   template <std::size_t N>
-  static bool read(const FlatJson& message, const std::string& path,
-                   const std::array<const char*, N>& names, std::array<double, N>& out) {
-    bool all = true;
+  static bool read(const FlatJson& message, const std::string& path, std::array<double, N>& out,
+                   const char* names = nullptr) {
     for (std::size_t k = 0; k < N; ++k) {
-      out[k] = message.number(path + '/' + names[k]);
-      all = all && std::isfinite(out[k]);
+      const std::string name = names != nullptr ? std::string(1, names[k]) : std::to_string(k);
+      out[k] = message.number(path + '/' + name);
     }
-    return all;
+    return std::all_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); });
   }
 
   bool take(const std::string& datagram, ClientPose& pose) {
@@ -295,11 +291,11 @@ class Client {
       heard_ = "what it sends is no JSON";
       return false;
     }
-    const std::string version = message.text("v");
-    other_version_ = version.substr(0, version.find('.')) != std::to_string(kProtocolMajor);
+    const std::string version = message.text("v"), ours = std::to_string(kProtocolMajor);
+    other_version_ = version.substr(0, version.find('.')) != ours;
     if (other_version_) {
       heard_ = "lilod at " + server_ + " speaks protocol " + version + ", this client reads " +
-               std::to_string(kProtocolMajor) + ".x";
+               ours + ".x";
       return false;
     }
     if (message.has("pose/status")) return take_pose(message, pose);
@@ -317,45 +313,34 @@ class Client {
   }
 
   // A pose of which a number is missing is none.
-  bool take_pose(const FlatJson& message, ClientPose& pose) {
-    ClientPose read_pose;
+  bool take_pose(const FlatJson& message, ClientPose& out) {
+    ClientPose pose;
     std::int64_t sec = 0, nsec = 0;
-    const std::array<const char*, 3> xyz{"x", "y", "z"};
-    const std::array<const char*, 4> xyzw{"x", "y", "z", "w"};
-    const bool whole = message.integer("seq", read_pose.seq) &&
-                       message.integer("pose/stamp/sec", sec) &&
+    const bool whole = message.integer("seq", pose.seq) && message.integer("pose/stamp/sec", sec) &&
                        message.integer("pose/stamp/nsec", nsec) &&
-                       read(message, "pose/position", xyz, read_pose.position) &&
-                       read(message, "pose/orientation", xyzw, read_pose.orientation);
+                       read(message, "pose/position", pose.position, "xyz") &&
+                       read(message, "pose/orientation", pose.orientation, "xyzw");
     if (!whole) {
       heard_ = "it sent a pose with numbers missing";
       return false;
     }
-    read_pose.stamp_ns = sec * 1'000'000'000 + nsec;
-    read_pose.timestamp = message.number("timestamp");
-    read_pose.session = message.text("session");
-    read_pose.new_session = read_pose.session != session_;
-    session_ = read_pose.session;
-    read_pose.frame_id = message.text("pose/frame_id");
-    read_pose.child_frame_id = message.text("pose/child_frame_id");
-    read_pose.status = message.text("pose/status");
-    read_pose.latency_ms = message.number("pose/latency_ms");
-    read_pose.has_twist = read(message, "pose/twist/linear", xyz, read_pose.linear) &&
-                          read(message, "pose/twist/angular", xyz, read_pose.angular);
-    if (!read_pose.has_twist) read_pose.linear = read_pose.angular = {};
-    read_covariance(message, read_pose);
-    read_weak_directions(message, read_pose);
-    pose = std::move(read_pose);
-    return true;
-  }
-
-  static void read_covariance(const FlatJson& message, ClientPose& pose) {
-    pose.has_covariance = true;
-    for (std::size_t k = 0; k < 36; ++k) {
-      pose.covariance[k] = message.number("pose/covariance/" + std::to_string(k));
-      pose.has_covariance = pose.has_covariance && std::isfinite(pose.covariance[k]);
-    }
+    pose.stamp_ns = sec * 1'000'000'000 + nsec;
+    pose.timestamp = message.number("timestamp");
+    pose.session = message.text("session");
+    pose.new_session = pose.session != session_;
+    session_ = pose.session;
+    pose.frame_id = message.text("pose/frame_id");
+    pose.child_frame_id = message.text("pose/child_frame_id");
+    pose.status = message.text("pose/status");
+    pose.latency_ms = message.number("pose/latency_ms");
+    pose.has_twist = read(message, "pose/twist/linear", pose.linear, "xyz") &&
+                     read(message, "pose/twist/angular", pose.angular, "xyz");
+    if (!pose.has_twist) pose.linear = pose.angular = {};
+    pose.has_covariance = read(message, "pose/covariance", pose.covariance);
     if (!pose.has_covariance) pose.covariance = {};
+    read_weak_directions(message, pose);
+    out = std::move(pose);
+    return true;
   }
 
   static void read_weak_directions(const FlatJson& message, ClientPose& pose) {
@@ -363,8 +348,7 @@ class Client {
          weak = "pose/weak_directions/" + std::to_string(pose.weak_directions.size())) {
       ClientWeakDirection& added = pose.weak_directions.emplace_back();
       added.from_scan = message.number(weak + "/from_scan");
-      for (std::size_t k = 0; k < 6; ++k)
-        added.direction[k] = message.number(weak + "/direction/" + std::to_string(k));
+      read(message, weak + "/direction", added.direction);
     }
   }
 
