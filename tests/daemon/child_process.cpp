@@ -1,5 +1,7 @@
 #include "tests/daemon/child_process.hpp"
 
+#include "tests/daemon/text_of.hpp"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -7,9 +9,7 @@
 #include <csignal>
 #include <fcntl.h>
 #include <filesystem>
-#include <fstream>
 #include <spawn.h>
-#include <sstream>
 #include <sys/wait.h>
 #include <system_error>
 #include <thread>
@@ -24,13 +24,6 @@ std::string output_file(const char* what) {
   static std::atomic<int> next{0};
   return testing::TempDir() + "lilo_child_" + std::to_string(getpid()) + '_' +
          std::to_string(next++) + what;
-}
-
-std::string contents(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
@@ -97,8 +90,8 @@ std::optional<int> ChildProcess::wait(std::chrono::milliseconds at_most) {
   return exit_code_;
 }
 
-std::string ChildProcess::standard_output() const { return contents(output_path_); }
-std::string ChildProcess::standard_error() const { return contents(error_path_); }
+std::string ChildProcess::standard_output() const { return text_of(output_path_); }
+std::string ChildProcess::standard_error() const { return text_of(error_path_); }
 
 Finished run_to_end(const std::vector<std::string>& arguments) {
   ChildProcess child(arguments);

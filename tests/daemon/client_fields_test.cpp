@@ -45,33 +45,41 @@ Estimate an_estimate() {
   return e;
 }
 
-/// Answers every request by the same pose.
-class OnePoseServer {
+/// Sends one datagram to whoever asks.
+class OneAnswerServer {
  public:
-  explicit OnePoseServer(const Estimate& estimate) {
-    JsonWriter out;
-    const PoseMessageContext context{"0123456789abcdef", "odom", "velodyne"};
-    pose_ = write_pose(context, {.estimate = estimate, .seq = 7}, 2'000'000, out);
-    thread_ = std::thread([this] {
-      while (!stop_) {
-        if (socket_.receive(std::chrono::milliseconds(50)))
-          socket_.send_to(socket_.sender(), pose_);
-      }
-    });
-  }
-  ~OnePoseServer() {
+  explicit OneAnswerServer(std::string answer)
+      : thread_([this, answer = std::move(answer)] {
+          while (!stop_) {
+            if (socket_.receive(std::chrono::milliseconds(50)))
+              socket_.send_to(socket_.sender(), answer);
+          }
+        }) {}
+  ~OneAnswerServer() {
     stop_ = true;
     thread_.join();
   }
-  OnePoseServer(const OnePoseServer&) = delete;
-  OnePoseServer& operator=(const OnePoseServer&) = delete;
+  OneAnswerServer(const OneAnswerServer&) = delete;
+  OneAnswerServer& operator=(const OneAnswerServer&) = delete;
   [[nodiscard]] std::uint16_t port() const { return socket_.port(); }
 
  private:
   UdpSocket socket_;
-  std::string pose_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
+};
+
+/// Sends the same pose to whoever asks.
+class OnePoseServer : public OneAnswerServer {
+ public:
+  explicit OnePoseServer(const Estimate& estimate) : OneAnswerServer(written(estimate)) {}
+
+ private:
+  static std::string written(const Estimate& estimate) {
+    JsonWriter out;
+    const PoseMessageContext context{"0123456789abcdef", "odom", "velodyne"};
+    return std::string(write_pose(context, {.estimate = estimate, .seq = 7}, 2'000'000, out));
+  }
 };
 
 TEST(ClientFields, CppClientReadsCovarianceAndWeakDirections) {
@@ -113,30 +121,6 @@ TEST(ClientFields, WhatIsNotSaidIsNotThere) {
   EXPECT_FALSE(pose.has_twist) << "nobody measured it";
   EXPECT_TRUE(pose.weak_directions.empty());
 }
-
-/// Sends one datagram to whoever asks.
-class OneAnswerServer {
- public:
-  explicit OneAnswerServer(std::string answer)
-      : thread_([this, answer = std::move(answer)] {
-          while (!stop_) {
-            if (socket_.receive(std::chrono::milliseconds(50)))
-              socket_.send_to(socket_.sender(), answer);
-          }
-        }) {}
-  ~OneAnswerServer() {
-    stop_ = true;
-    thread_.join();
-  }
-  OneAnswerServer(const OneAnswerServer&) = delete;
-  OneAnswerServer& operator=(const OneAnswerServer&) = delete;
-  [[nodiscard]] std::uint16_t port() const { return socket_.port(); }
-
- private:
-  UdpSocket socket_;
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
-};
 
 /// Why the C++ client has no pose from this server.
 std::string why_none(std::uint16_t port) {

@@ -2,12 +2,8 @@
 #include "tools/clients/lilo_client.hpp"
 
 #include <algorithm>
-#include <arpa/inet.h>
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <ifaddrs.h>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -19,49 +15,9 @@ namespace {
 
 const std::string kPython = "/usr/bin/python3";
 
-/// An address of this computer that is not loopback, or nothing.
-std::optional<std::string> outer_address() {
-  ifaddrs* all = nullptr;
-  if (getifaddrs(&all) != 0) return std::nullopt;
-  std::optional<std::string> out;
-  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
-    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
-    const auto* address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
-    const std::string text = inet_ntoa(address->sin_addr);
-    if (!text.starts_with("127.")) out = text;
-  }
-  freeifaddrs(all);
-  return out;
-}
-
-/// Turns the sensor until the object goes.
-class Turning {
- public:
-  explicit Turning(const Lilod& lilod)
-      : thread_([this, &lilod] {
-          Sensor sensor;
-          while (!stop_) sensor.turn(lilod, 0.5);
-        }) {}
-  ~Turning() {
-    stop_ = true;
-    thread_.join();
-  }
-  Turning(const Turning&) = delete;
-  Turning& operator=(const Turning&) = delete;
-
- private:
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
-};
-
 /// One more sink, by a reload.
 void add_sink(Lilod& lilod, const std::string& endpoint) {
-  std::ostringstream text;
-  text << std::ifstream(lilod.config_path()).rdbuf();
-  std::string yaml = text.str();
-  yaml.insert(yaml.find("sinks: [") + 8, '"' + endpoint + "\", ");
-  std::ofstream(lilod.config_path()) << yaml;
-  lilod.process().signal(SIGHUP);
+  lilod.change_config("sinks: [", "sinks: [\"" + endpoint + "\", ");
   EXPECT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
 }
 

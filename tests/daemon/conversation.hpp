@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -69,6 +70,26 @@ class Sensor {
  private:
   RoundRoomSource source_{1'000'000};
   UdpSocket socket_;
+};
+
+/// Turns the sensor until the object goes.
+class Turning {
+ public:
+  explicit Turning(const Lilod& lilod)
+      : thread_([this, &lilod] {
+          Sensor sensor;
+          while (!stop_) sensor.turn(lilod, 0.5);
+        }) {}
+  ~Turning() {
+    stop_ = true;
+    thread_.join();
+  }
+  Turning(const Turning&) = delete;
+  Turning& operator=(const Turning&) = delete;
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
 };
 
 }  // namespace lilo

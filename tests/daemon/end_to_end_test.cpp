@@ -2,6 +2,7 @@
 #include "drivers/scan_source.hpp"
 #include "tests/daemon/lilod_fixture.hpp"
 #include "tests/daemon/schema.hpp"
+#include "tests/daemon/text_of.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -11,8 +12,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <vector>
 
 namespace lilo {
@@ -25,9 +24,7 @@ constexpr std::int64_t kHourNs = 3'600'000'000'000;
 /// Whole records of a capture, up to `bytes` of it; all of it when LILO_LONG_TESTS is set. A pcap
 /// is a header of 24 bytes and records of 16 bytes and what their third word says.
 std::string beginning_of(const std::string& path, std::size_t bytes) {
-  std::ostringstream all;
-  all << std::ifstream(path, std::ios::binary).rdbuf();
-  std::string text = all.str();
+  std::string text = text_of(path);
   if (std::getenv("LILO_LONG_TESTS") != nullptr) return text;
   std::size_t end = 24;
   while (end + 16 <= text.size()) {

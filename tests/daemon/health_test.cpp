@@ -6,6 +6,7 @@
 #include "daemon/prometheus.hpp"
 #include "daemon/recent_faults.hpp"
 #include "daemon/snapshot.hpp"
+#include "tests/daemon/text_of.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -275,9 +276,7 @@ TEST(MetricsFile, IsReplacedWholeAndReadable) {
   ASSERT_FALSE(replace_file(path, "one"));
   ASSERT_FALSE(replace_file(path, "two"));
   umask(before);
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  EXPECT_EQ(text.str(), "two");
+  EXPECT_EQ(text_of(path), "two");
   struct stat status {};
   stat(path.c_str(), &status);
   EXPECT_EQ(status.st_mode & 0777U, 0644U);
@@ -293,9 +292,7 @@ TEST(MetricsFile, NeitherFollowsLinksNorWaitsForPipes) {
   std::ofstream(victim) << "precious";
   ASSERT_EQ(symlink(victim.c_str(), draft.c_str()), 0);
   EXPECT_EQ(replace_file(path, "x"), std::errc::too_many_symbolic_link_levels);
-  std::ostringstream text;
-  text << std::ifstream(victim).rdbuf();
-  EXPECT_EQ(text.str(), "precious");
+  EXPECT_EQ(text_of(victim), "precious");
   std::filesystem::remove(draft);
   ASSERT_EQ(mkfifo(draft.c_str(), 0600), 0);
   EXPECT_EQ(replace_file(path, "x"), std::errc::no_such_device_or_address) << "nobody reads it";
@@ -330,9 +327,8 @@ TEST(MetricsFile, ReadersNeverSeeHalfOfIt) {
     for (; !stop; ++writes) EXPECT_FALSE(replace_file(path, writes % 2 == 0 ? two : one));
   });
   while (writes < 200) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    EXPECT_TRUE(text.str() == one || text.str() == two) << text.str().size() << " bytes";
+    const std::string text = text_of(path);
+    EXPECT_TRUE(text == one || text == two) << text.size() << " bytes";
   }
   stop = true;
   writer.join();

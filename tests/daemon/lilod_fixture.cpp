@@ -1,5 +1,7 @@
 #include "tests/daemon/lilod_fixture.hpp"
 
+#include "tests/daemon/text_of.hpp"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -9,15 +11,12 @@
 #include <unistd.h>
 
 namespace lilo {
-namespace {
 
 std::string unique_path(const std::string& name) {
   static std::atomic<int> next{0};
   return testing::TempDir() + "lilo_" + std::to_string(getpid()) + '_' + std::to_string(next++) +
          '_' + name;
 }
-
-}  // namespace
 
 Lilod::Lilod(const std::string& more, const std::map<std::string, std::string>& environment,
              const std::string& sensor)
@@ -48,6 +47,13 @@ bool Lilod::wait_ready() {
   const bool ready = systemd_.wait_for("READY=1", std::chrono::seconds(20));
   if (!ready) ADD_FAILURE() << "lilod did not get ready:\n" << process_->standard_error();
   return ready;
+}
+
+void Lilod::change_config(const std::string& from, const std::string& to) {
+  std::string yaml = text_of(config_path_);
+  yaml.replace(yaml.find(from), from.size(), to);
+  std::ofstream(config_path_) << yaml;
+  process_->signal(SIGHUP);
 }
 
 int Lilod::stop() {

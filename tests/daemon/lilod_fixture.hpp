@@ -39,6 +39,8 @@ class Lilod {
   [[nodiscard]] bool wait_ready();
   /// kill -9 and another start with the same ports.
   void restart();
+  /// Its file with the first `from` replaced by `to`, and SIGHUP.
+  void change_config(const std::string& from, const std::string& to);
   /// SIGTERM; the exit code.
   int stop();
 
@@ -58,6 +60,9 @@ class Lilod {
   std::map<std::string, std::string> environment_;
   std::unique_ptr<ChildProcess> process_;
 };
+
+/// A path of the test's own, of nothing yet.
+std::string unique_path(const std::string& name);
 
 /// A file of the test's own, gone with the object.
 class TemporaryFile {

@@ -1,5 +1,6 @@
 #include "daemon/metrics_writer.hpp"
 
+#include "tests/daemon/text_of.hpp"
 #include "tests/tools/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -7,9 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
-#include <sstream>
 #include <string>
 #include <sys/stat.h>
 #include <thread>
@@ -19,17 +18,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::string read_whole(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
-
 TEST(MetricsWriter, WritesWhatItWasGivenBeforeItEnds) {
   const TemporaryFolder folder;
   const std::string path = folder.path() + "/metrics";
   { EXPECT_FALSE(MetricsWriter().write(path, "the last")); }
-  EXPECT_EQ(read_whole(path), "the last");
+  EXPECT_EQ(text_of(path), "the last");
 }
 
 TEST(MetricsWriter, WritesWhereItIsTold) {
@@ -38,14 +31,14 @@ TEST(MetricsWriter, WritesWhereItIsTold) {
   {
     MetricsWriter writer;
     writer.write(one, "first");
-    while (read_whole(one) != "first") std::this_thread::sleep_for(1ms);
+    while (text_of(one) != "first") std::this_thread::sleep_for(1ms);
     while (!std::filesystem::exists(other)) {
       writer.write(other, "second");  // unless it is still at the first
       std::this_thread::sleep_for(1ms);
     }
   }
-  EXPECT_EQ(read_whole(one), "first");
-  EXPECT_EQ(read_whole(other), "second");
+  EXPECT_EQ(text_of(one), "first");
+  EXPECT_EQ(text_of(other), "second");
 }
 
 std::atomic<bool> disk_answers{false};

@@ -1,10 +1,9 @@
 #include "tests/daemon/conversation.hpp"
+#include "tests/daemon/text_of.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <regex>
-#include <sstream>
 #include <unistd.h>
 
 namespace lilo {
@@ -186,10 +185,9 @@ TEST(Metrics, AppearInTheRuntimeDirectory) {
     ASSERT_TRUE(next_of_kind(lilod.sink(), "health"));
     EXPECT_EQ(lilod.stop(), 0);
   }
-  std::ostringstream text;
-  text << std::ifstream(folder + "/lilo.prom").rdbuf();
+  const std::string text = text_of(folder + "/lilo.prom");
   const std::regex lost("\nlilo_packets_lost_total\\{instance=\"[^\"]+\"\\} 0\n");
-  EXPECT_TRUE(std::regex_search(text.str(), lost)) << text.str();
+  EXPECT_TRUE(std::regex_search(text, lost)) << text;
   std::filesystem::remove_all(folder);
 }
 

@@ -1,4 +1,5 @@
 #include "tests/daemon/conversation.hpp"
+#include "tests/daemon/text_of.hpp"
 
 #include <Eigen/Core>
 
@@ -70,9 +71,7 @@ TEST_F(Save, TheMapLiesWhereThePosesDo) {
   const json done = ask(client, lilod, R"({"save":"map"})", "done")["done"];
   ASSERT_EQ(done["file"], folder_ + "/map.pcd");
   ASSERT_GT(done["count"], 50);
-  std::ostringstream text;
-  text << std::ifstream(folder_ + "/map.pcd", std::ios::binary).rdbuf();
-  const std::string pcd = text.str();
+  const std::string pcd = text_of(folder_ + "/map.pcd");
   const std::size_t data = pcd.find("DATA binary\n") + 12;
   ASSERT_EQ(pcd.size() - data, done["count"].get<std::size_t>() * 12);
   for (std::size_t at = data; at < pcd.size(); at += 12) {

@@ -1,9 +1,8 @@
 #include "tests/daemon/schema.hpp"
 
-#include <gtest/gtest.h>
+#include "tests/daemon/text_of.hpp"
 
-#include <fstream>
-#include <sstream>
+#include <gtest/gtest.h>
 
 namespace lilo {
 namespace {
@@ -58,9 +57,7 @@ void expect_documented(const json& schema, const std::string& text) {
 }
 
 TEST(Schema, IsWhatTheDocumentSays) {
-  std::ostringstream text;
-  text << std::ifstream(LILO_PROTOCOL_FILE).rdbuf();
-  expect_documented(protocol_schema(), text.str());
+  expect_documented(protocol_schema(), text_of(LILO_PROTOCOL_FILE));
 }
 
 }  // namespace

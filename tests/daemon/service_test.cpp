@@ -7,7 +7,6 @@
 #include <fstream>
 #include <memory>
 #include <random>
-#include <sstream>
 #include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,22 +16,12 @@
 namespace lilo {
 namespace {
 
-/// The file of a running lilod with `from` replaced by `to`, and SIGHUP.
-void change_config(Lilod& lilod, const std::string& from, const std::string& to) {
-  std::ostringstream text;
-  text << std::ifstream(lilod.config_path()).rdbuf();
-  std::string yaml = text.str();
-  yaml.replace(yaml.find(from), from.size(), to);
-  std::ofstream(lilod.config_path()) << yaml;
-  lilod.process().signal(SIGHUP);
-}
-
 TEST(Reload, TakesWhatCanChangeAndNamesTheRest) {
   Lilod lilod;
   ASSERT_TRUE(lilod.wait_ready());
   UdpSocket other;
-  change_config(lilod, lilod.sink().endpoint() + "\"]",
-                other.endpoint() + "\"]\n  frame_id: elsewhere");
+  lilod.change_config(lilod.sink().endpoint() + "\"]",
+                      other.endpoint() + "\"]\n  frame_id: elsewhere");
   ASSERT_TRUE(lilod.systemd().wait_for("RELOADING=1", seconds(10)));
   ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
   EXPECT_TRUE(next_of_kind(other, "health")) << "the new sink";
@@ -53,7 +42,7 @@ TEST(Log, ItsLevelChangesWhileItRuns) {
   Lilod lilod("log:\n  level: error\n");
   ASSERT_TRUE(lilod.wait_ready());
   EXPECT_EQ(lilod.process().standard_error(), "");
-  change_config(lilod, "level: error", "level: info");
+  lilod.change_config("level: error", "level: info");
   ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
   EXPECT_EQ(lilod.stop(), 0);
   EXPECT_EQ(count(lilod.process().standard_error(), "stopping on signal"), 1U);
@@ -63,7 +52,7 @@ TEST(Log, ItsLevelChangesWhileItRuns) {
 TEST(Log, RepeatsAreLeftOutAndCounted) {
   Lilod lilod;
   ASSERT_TRUE(lilod.wait_ready());
-  change_config(lilod, "publish:", "publisch:");
+  lilod.change_config("publish:", "publisch:");
   for (int k = 0; k < 100; ++k) {
     ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
     lilod.process().signal(SIGHUP);
@@ -76,7 +65,7 @@ TEST(Log, RepeatsAreLeftOutAndCounted) {
 TEST(Reload, ABadFileChangesNothing) {
   Lilod lilod;
   ASSERT_TRUE(lilod.wait_ready());
-  change_config(lilod, "publish:", "publisch:");
+  lilod.change_config("publish:", "publisch:");
   ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
   while (lilod.sink().receive(milliseconds(0))) {
   }
@@ -84,7 +73,7 @@ TEST(Reload, ABadFileChangesNothing) {
   ASSERT_FALSE(health.is_null()) << "the old sink is still in force";
   EXPECT_NE(health["health"]["complaints"].dump().find("configuration file bad"),
             std::string::npos);
-  change_config(lilod, "publisch:", "publish:");
+  lilod.change_config("publisch:", "publish:");
   ASSERT_TRUE(lilod.systemd().wait_for("READY=1", seconds(10)));
   EXPECT_EQ(lilod.stop(), 0);
   EXPECT_NE(lilod.process().standard_error().find("did you mean publish?"), std::string::npos);

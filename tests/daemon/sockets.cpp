@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <ifaddrs.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -72,6 +73,20 @@ void UdpSocket::send_to(std::uint16_t port, const std::string& datagram) const {
 }
 
 std::uint16_t free_udp_port() { return UdpSocket().port(); }
+
+std::optional<std::string> outer_address() {
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return std::nullopt;
+  std::optional<std::string> out;
+  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
+    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+    const auto* address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
+    const std::string text = inet_ntoa(address->sin_addr);
+    if (!text.starts_with("127.")) out = text;
+  }
+  freeifaddrs(all);
+  return out;
+}
 
 NotifySocket::NotifySocket() : fd_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
   static std::atomic<int> next{0};

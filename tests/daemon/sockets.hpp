@@ -31,6 +31,9 @@ class UdpSocket {
 /// A port that was free a moment ago.
 std::uint16_t free_udp_port();
 
+/// An address of this computer that is not loopback, or nothing.
+std::optional<std::string> outer_address();
+
 /// What systemd would hear: the socket that NOTIFY_SOCKET names.
 class NotifySocket {
  public:

@@ -1,11 +1,11 @@
 #include "tests/daemon/child_process.hpp"
+#include "tests/daemon/text_of.hpp"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <regex>
-#include <sstream>
 #include <string>
 #include <unistd.h>
 
@@ -21,9 +21,8 @@ class SystemdUnit : public testing::TestWithParam<const char*> {
     if (!std::filesystem::exists(kAnalyze)) GTEST_SKIP() << kAnalyze << " is not here";
     folder_ = testing::TempDir() + "lilo_unit_" + std::to_string(getpid());
     std::filesystem::create_directories(folder_);
-    std::ostringstream unit;
-    unit << std::ifstream(std::string(LILO_UNIT_DIR) + '/' + GetParam()).rdbuf();
-    text_ = std::regex_replace(unit.str(), std::regex("ExecStart=\\S+/lilod"),
+    const std::string unit = text_of(std::string(LILO_UNIT_DIR) + '/' + GetParam());
+    text_ = std::regex_replace(unit, std::regex("ExecStart=\\S+/lilod"),
                                "ExecStart=" LILO_BIN_DIR "/lilod");
     std::ofstream(path()) << text_;
   }
