@@ -2,6 +2,7 @@
 #include "drivers/packet_source.hpp"
 #include "tests/drivers/capture_file.hpp"
 #include "tests/drivers/data_dir.hpp"
+#include "tests/drivers/same_calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -79,18 +80,7 @@ TEST(CalibrationFile, BothFormsOfOneTableAgree) {
   LILO_NEED_DATA("sim_hdl64_town");
   const auto xml = load_calibration(test::data_path("sim_hdl64_town/db.xml"));
   const auto yaml = load_calibration(test::data_path("sim_hdl64_town/calibration.yaml"));
-  for (std::size_t i = 0; i < 64; ++i) {
-    const LaserCorrection &a = xml.lasers[i], &b = yaml.lasers[i];
-    EXPECT_NEAR(a.rot_rad, b.rot_rad, 1e-9);
-    EXPECT_NEAR(a.vert_rad, b.vert_rad, 1e-9);
-    EXPECT_NEAR(a.dist_m, b.dist_m, 1e-9);
-    EXPECT_NEAR(a.vert_offset_m, b.vert_offset_m, 1e-9);
-    EXPECT_NEAR(a.horiz_offset_m, b.horiz_offset_m, 1e-9);
-    EXPECT_NEAR(a.focal_distance_m, b.focal_distance_m, 1e-9);
-    EXPECT_NEAR(a.focal_slope, b.focal_slope, 1e-9);
-    EXPECT_EQ(a.min_intensity, b.min_intensity);
-    EXPECT_EQ(a.max_intensity, b.max_intensity);
-  }
+  test::expect_same(xml, yaml);
   EXPECT_NEAR(xml.lasers[0].rot_rad, -7.16 * kDeg, 1e-12);  // degrees in db.xml
   EXPECT_NEAR(xml.lasers[0].dist_m, 1.52, 1e-12);           // centimetres
   EXPECT_EQ(xml.lasers[1].min_intensity, 40);

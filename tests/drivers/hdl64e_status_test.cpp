@@ -1,6 +1,7 @@
 #include "drivers/hdl64e_status.hpp"
 
 #include "tests/drivers/packets.hpp"
+#include "tests/drivers/same_calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 namespace lilo {
 namespace {
 
+using test::expect_same;
 using test::HdlOptions;
 using test::TimedPacket;
 
@@ -41,23 +43,6 @@ const std::vector<Status>& s3_laps() {
 const std::vector<Status>& s2_laps() {
   static const auto laps = status_of(2 * 4160, s2());
   return laps;
-}
-
-void expect_same(const Calibration& a, const Calibration& b) {
-  for (std::size_t i = 0; i < 64; ++i) {
-    const LaserCorrection &x = a.lasers[i], &y = b.lasers[i];
-    EXPECT_NEAR(x.rot_rad, y.rot_rad, 1e-9);
-    EXPECT_NEAR(x.vert_rad, y.vert_rad, 1e-9);
-    EXPECT_NEAR(x.dist_m, y.dist_m, 1e-9);
-    EXPECT_NEAR(x.dist_x_m, y.dist_x_m, 1e-9);
-    EXPECT_NEAR(x.dist_y_m, y.dist_y_m, 1e-9);
-    EXPECT_NEAR(x.vert_offset_m, y.vert_offset_m, 1e-9);
-    EXPECT_NEAR(x.horiz_offset_m, y.horiz_offset_m, 1e-9);
-    EXPECT_NEAR(x.focal_distance_m, y.focal_distance_m, 1e-9);
-    EXPECT_NEAR(x.focal_slope, y.focal_slope, 1e-9);
-    EXPECT_EQ(x.min_intensity, y.min_intensity);
-    EXPECT_EQ(x.max_intensity, y.max_intensity);
-  }
 }
 
 // Feeds statuses until one is not incomplete; how many that took, or -1.

@@ -150,11 +150,16 @@ class Live(WithPrograms):
 
 
 class Recorded(WithPrograms):
-    def test_slider_pause_and_speed(self):
+    def paused(self, when):
+        """A browser that stops playing the capture when `when` is true."""
         view, browser = self.view(ARGS.capture), self.browser()
         browser.open(view.url)
-        browser.wait("window.lilo && lilo.source.view.done", SLOW_S)
+        browser.wait(f"window.lilo && {when}", SLOW_S)
         browser.press(" ")
+        return browser
+
+    def test_slider_pause_and_speed(self):
+        browser = self.paused("lilo.source.view.done")
         browser.wait("!lilo.player.playing")
         frames = browser.run("lilo.store.frames.length")
         self.assertGreater(frames, 100)
@@ -194,10 +199,7 @@ class Recorded(WithPrograms):
         browser.wait(f"lilo.player.at === {stands + 1}")
 
     def test_measures_a_distance(self):
-        view, browser = self.view(ARGS.capture), self.browser()
-        browser.open(view.url)
-        browser.wait("window.lilo && lilo.store.frames.length > 100", SLOW_S)
-        browser.press(" ")
+        browser = self.paused("lilo.store.frames.length > 100")
         browser.press("3")
         browser.run("lilo.settled()")
         browser.press("m")
