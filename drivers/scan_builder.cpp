@@ -58,10 +58,10 @@ struct ScanBuilder::Impl {
   void follow(const SensorTable& table);
   bool feed_vlp(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
   bool feed_hdl64e(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
-  PacketSequence::Verdict sort(std::uint32_t stamp_us, std::int64_t received_ns,
-                               std::int64_t& line_ns);
-  void forgive_blind();
-  void assemble(std::int64_t line_ns, PacketSequence::Verdict verdict);
+  std::optional<std::uint32_t> place(std::uint32_t stamp_us, std::int64_t line_ns,
+                                     std::int64_t received_ns);
+  void restart_line(std::uint32_t stamp_us, std::int64_t received_ns);
+  std::uint32_t add_newest(std::int64_t line_ns, std::uint32_t missing);
 
   SensorModel model;
   bool ignore_product;
@@ -209,88 +209,77 @@ void ScanBuilder::Impl::follow(const SensorTable& table) {
 bool ScanBuilder::Impl::feed_vlp(DataPacket data, std::uint32_t stamp_us,
                                  std::int64_t received_ns) {
   if (!decoder.load(data)) return false;
-  std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
-  const auto verdict = sort(stamp_us, received_ns, line_ns);
-  assemble(line_ns, verdict);
+  place(stamp_us, clock.unwrap(stamp_us, received_ns), received_ns);
   return true;
 }
 
 bool ScanBuilder::Impl::feed_hdl64e(DataPacket data, std::uint32_t stamp_us,
                                     std::int64_t received_ns) {
-  using Arrival = PacketSequence::Arrival;
-  std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
+  const std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
   if (!hdl64e.load(data, line_ns)) return false;
   if (!hdl64e.times_known()) {
     ++counts.waiting_packets;
     sequence.restart_at(line_ns, received_ns);  // or those that waited would count as lost
     return true;
   }
-  const auto verdict = sort(stamp_us, received_ns, line_ns);
-  if (verdict.arrival == Arrival::restart) {
-    hdl64e.restart();
-    return true;
-  }
-  if (hdl64e.is_ready()) {
-    assemble(line_ns, verdict);
-  } else {
-    ++counts.waiting_packets;
-  }
-  const bool in_order = verdict.arrival == Arrival::first || verdict.arrival == Arrival::next;
-  if (in_order && hdl64e.see_status(data, verdict.lost, stamp_us, received_ns, clock))
+  const auto lost = place(stamp_us, line_ns, received_ns);
+  if (lost && hdl64e.see_status(data, *lost, stamp_us, received_ns, clock))
     assembler.interrupt(clock);
   return true;
 }
 
-// `line_ns` becomes another one where the sensor's clock jumped: the old line ends there.
-PacketSequence::Verdict ScanBuilder::Impl::sort(std::uint32_t stamp_us, std::int64_t received_ns,
-                                                std::int64_t& line_ns) {
-  auto verdict =
+// What became of the packet that the decoder holds: the one place where it is counted and put into
+// its scan. Returns how many were lost right before it; nothing where the order of arrival does not
+// tell.
+std::optional<std::uint32_t> ScanBuilder::Impl::place(std::uint32_t stamp_us, std::int64_t line_ns,
+                                                      std::int64_t received_ns) {
+  const auto [arrival, missing] =
       sequence.see(line_ns, received_ns, decoder.packet_period_ns(), decoder.inner_gap_ns());
-  switch (verdict.arrival) {
+  if (arrival == PacketSequence::Arrival::restart) {
+    restart_line(stamp_us, received_ns);
+    return std::nullopt;
+  }
+  const bool has_returns = decoder.table().model != SensorModel::hdl64e || hdl64e.is_ready();
+  if (!has_returns) ++counts.waiting_packets;
+  switch (arrival) {
     case PacketSequence::Arrival::duplicate:
       ++counts.packets_duplicated;
-      break;
+      if (has_returns) assembler.note_duplicate();
+      return std::nullopt;
     case PacketSequence::Arrival::late:
       ++counts.packets_reordered;
       counts.packets_lost -= std::min<std::uint64_t>(counts.packets_lost, 1);
-      break;
-    case PacketSequence::Arrival::restart:
-      ++counts.sensor_restarts;
-      assembler.interrupt(clock);
-      clock.restart();
-      line_ns = clock.unwrap(stamp_us, received_ns);
-      sequence.restart_at(line_ns, received_ns);
-      break;
-    case PacketSequence::Arrival::first:
-    case PacketSequence::Arrival::next:
-      verdict.lost = assembler.without_blind(decoder, line_ns, verdict.lost);
-      counts.packets_lost += verdict.lost;
-      forgive_blind();
-      break;
-  }
-  return verdict;
-}
-
-// What was due in a blind sector was counted as lost until the sector was known.
-void ScanBuilder::Impl::forgive_blind() {
-  const std::uint64_t miscounted =
-      std::min(counts.packets_lost, assembler.take_miscounted_as_lost());
-  counts.packets_lost -= miscounted;
-  counts.packets_blind += miscounted;
-}
-
-void ScanBuilder::Impl::assemble(std::int64_t line_ns, PacketSequence::Verdict verdict) {
-  switch (verdict.arrival) {
-    case PacketSequence::Arrival::duplicate:
-      assembler.note_duplicate();
-      break;
-    case PacketSequence::Arrival::late:
-      if (!assembler.add_late(decoder, line_ns)) ++counts.packets_late;
-      break;
+      if (has_returns && !assembler.add_late(decoder, line_ns)) ++counts.packets_late;
+      return std::nullopt;
     default:
-      assembler.add(decoder, line_ns, verdict, clock);
-      break;
+      if (has_returns) return add_newest(line_ns, missing);
+      counts.packets_lost += missing;
+      return missing;
   }
+}
+
+// The sensor's clock jumped: the old line ends here.
+void ScanBuilder::Impl::restart_line(std::uint32_t stamp_us, std::int64_t received_ns) {
+  ++counts.sensor_restarts;
+  assembler.interrupt(clock);
+  clock.restart();
+  const std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
+  sequence.restart_at(line_ns, received_ns);
+  if (decoder.table().model == SensorModel::hdl64e) {
+    hdl64e.restart();
+  } else {
+    add_newest(line_ns, 0);
+  }
+}
+
+// Returns how many of the `missing` packets before it are lost.
+std::uint32_t ScanBuilder::Impl::add_newest(std::int64_t line_ns, std::uint32_t missing) {
+  const ScanAssembler::Loss loss = assembler.add(decoder, line_ns, missing, clock);
+  counts.packets_lost += loss.lost;
+  const std::uint64_t blind = std::min(counts.packets_lost, loss.never_sent);
+  counts.packets_lost -= blind;
+  counts.packets_blind += blind;
+  return loss.lost;
 }
 
 }  // namespace lilo
