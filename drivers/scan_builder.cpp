@@ -19,6 +19,12 @@ namespace {
 // A sensor that was silent for so long may be replaced by another one on the same network.
 constexpr std::int64_t kReplaceableNs = 2'000'000'000;
 
+enum class Outcome : std::uint8_t {
+  used,
+  refused,  // of another model
+  malformed,
+};
+
 // Throws where the configured sensor cannot have this calibration.
 std::optional<Calibration> configured_calibration(const SensorConfig& config) {
   if (config.calibration_file.empty()) return std::nullopt;
@@ -50,8 +56,8 @@ struct ScanBuilder::Impl {
 
   void feed(const PacketView& packet);
   bool is_followed(const PacketView& packet);
-  bool feed_data(const PacketView& packet);
-  bool feed_position(const PacketView& packet);
+  Outcome feed_data(const PacketView& packet);
+  Outcome feed_position(const PacketView& packet);
   [[nodiscard]] const SensorTable* accept(const SensorIdentity& identity,
                                           std::int64_t received_ns) const;
   void refuse(const SensorIdentity& identity);
@@ -96,8 +102,9 @@ void ScanBuilder::use_calibration(const Calibration& calibration) {
 
 SensorStatus ScanBuilder::status() const {
   const Impl& impl = *impl_;
-  SensorStatus status{
-      .model = impl.seen_model, .clock = impl.clock.source(), .sensor_ipv4 = impl.sensor_ipv4};
+  SensorStatus status{.model = impl.seen_model,
+                      .clock = impl.clock.source(),
+                      .sensor_ipv4 = impl.sensor_ipv4};
   status.refused = impl.refused;
   if (impl.seen_model == SensorModel::automatic) return status;
   const SensorTable& table = impl.decoder.table();
@@ -118,13 +125,13 @@ void ScanBuilder::Impl::feed(const PacketView& packet) {
     return;
   }
   const bool on_position_port = position_port != 0 && packet.destination_port == position_port;
-  const bool taken = on_position_port ? feed_position(packet) : feed_data(packet);
-  if (taken) {
-    sensor_ipv4 = packet.source_ipv4;
+  const Outcome outcome = on_position_port ? feed_position(packet) : feed_data(packet);
+  if (outcome == Outcome::malformed) ++counts.malformed_packets;
+  // Data alone: what tells the time does not tell its model, and a sensor that is refused must not
+  // keep out the right one.
+  if (outcome == Outcome::used && !on_position_port) sensor_ipv4 = packet.source_ipv4;
+  if (outcome == Outcome::used && packet.source_ipv4 == sensor_ipv4)
     sensor_heard_ns = packet.received_ns;
-  } else {
-    ++counts.malformed_packets;
-  }
   counts.scans_complete = assembler.scans_complete();
   counts.scans_partial = assembler.scans_partial();
   counts.stalls = assembler.stalls();
@@ -136,36 +143,36 @@ bool ScanBuilder::Impl::is_followed(const PacketView& packet) {
   return std::abs(packet.received_ns - sensor_heard_ns) > kReplaceableNs;
 }
 
-bool ScanBuilder::Impl::feed_position(const PacketView& packet) {
+Outcome ScanBuilder::Impl::feed_position(const PacketView& packet) {
   const auto position = parse_position_packet(packet.payload);
-  if (!position) return false;
+  if (!position) return Outcome::malformed;
   ++counts.position_packets;
   if (position->synchronized())
     clock.gps_fix(position->stamp_us, position->gps->utc_ns, packet.received_ns);
-  return true;
+  return Outcome::used;
 }
 
-bool ScanBuilder::Impl::feed_data(const PacketView& packet) {
-  if (packet.payload.size() != wire::kDataPacketBytes) return false;
+Outcome ScanBuilder::Impl::feed_data(const PacketView& packet) {
+  if (packet.payload.size() != wire::kDataPacketBytes) return Outcome::malformed;
   const DataPacket data = packet.payload.first<wire::kDataPacketBytes>();
   const std::uint32_t stamp_us = wire::u32(data.data() + wire::kStampOffset);
-  if (stamp_us > wire::kMaxStampUs) return false;
-  if (wire::block_flag(data.data(), 0) != wire::kUpperFlag) return false;
+  if (stamp_us > wire::kMaxStampUs) return Outcome::malformed;
+  if (wire::block_flag(data.data(), 0) != wire::kUpperFlag) return Outcome::malformed;
   const SensorIdentity identity = identify(data);
   const SensorTable* table = accept(identity, packet.received_ns);
   if (table == nullptr) {
     refuse(identity);
-    return true;
+    return Outcome::refused;
   }
   if (table != &decoder.table()) follow(*table);
   const bool good = table->model == SensorModel::hdl64e
                         ? feed_hdl64e(data, stamp_us, packet.received_ns)
                         : feed_vlp(data, stamp_us, packet.received_ns);
-  if (!good) return false;
+  if (!good) return Outcome::malformed;
   ++counts.data_packets;
   seen_model = table->model;
   model_heard_ns = packet.received_ns;
-  return true;
+  return Outcome::used;
 }
 
 // The table to read a packet with, null to refuse it. Old firmware leaves the product byte to
