@@ -72,8 +72,17 @@ TEST(Health, SaysEverythingInOneDatagram) {
 TEST(Health, NeverOutgrowsTheDatagram) {
   Health h = a_health();
   const std::uint64_t huge = std::numeric_limits<std::uint32_t>::max() * std::uint64_t{1000};
-  h.driver = {huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge};
-  h.source = {huge, huge, huge, huge, huge, huge};
+  h.driver = {.data_packets = huge,
+              .malformed_packets = huge,
+              .packets_lost = huge,
+              .packets_duplicated = huge,
+              .packets_reordered = huge,
+              .scans_complete = huge,
+              .scans_partial = huge,
+              .sensor_restarts = huge,
+              .foreign_packets = huge,
+              .wrong_sensor_packets = huge};
+  h.source = {.kernel_dropped = huge, .receive_errors = huge};
   h.instance = std::string(32, 'x');
   h.map_refused = h.clock_steps = huge;
   h.scans_processed = h.scans_dropped = h.poses_sent = h.poses_not_sent = h.send_errors = huge;
@@ -160,6 +169,39 @@ TEST(Health, SaysThatTheMapIsFullAndThatSocketsFail) {
                            "lilo_complaint{instance=\"front\",kind=\"map_full\"} 1",
                            "lilo_complaint{instance=\"front\",kind=\"packets_lost\"} 0"}) {
     EXPECT_NE(text.find('\n' + std::string(line) + '\n'), std::string::npos) << line;
+  }
+}
+
+// Each count under its own name: a number that reached another's place would be found there.
+TEST(Prometheus, NamesEveryCountOfTheDrivers) {
+  Health h = a_health();
+  h.driver = {.data_packets = 101,
+              .position_packets = 102,
+              .malformed_packets = 103,
+              .packets_lost = 104,
+              .packets_duplicated = 105,
+              .packets_reordered = 106,
+              .packets_late = 107,
+              .packets_blind = 108,
+              .scans_complete = 109,
+              .scans_partial = 110,
+              .sensor_restarts = 111,
+              .stalls = 112,
+              .foreign_packets = 113,
+              .wrong_sensor_packets = 114,
+              .waiting_packets = 115};
+  static_assert(sizeof(DriverCounts) == 15 * sizeof(std::uint64_t), "name the new one here");
+  std::string text;
+  write_prometheus("0123456789abcdef", h, text);
+  int expected = 101;
+  for (const char* name :
+       {"packets_received", "packets_position", "packets_malformed", "packets_lost",
+        "packets_duplicated", "packets_reordered", "packets_late", "packets_blind",
+        "scans_complete", "scans_partial", "sensor_restarts", "sensor_stalls", "packets_foreign",
+        "packets_wrong_sensor", "packets_waiting"}) {
+    const std::string line = "\nlilo_" + std::string(name) + "_total{instance=\"front\"} " +
+                             std::to_string(expected++) + '\n';
+    EXPECT_NE(text.find(line), std::string::npos) << line;
   }
 }
 
