@@ -98,6 +98,9 @@ void write_state(Metrics& m, const std::string& session, const Health& h) {
     m.label("lilo_sensor_info", "The sensor that is heard.", "model", to_string(h.sensor.model));
     m.gauge("lilo_sensor_rpm", "Revolutions a minute, by its azimuths.", h.sensor.rpm);
   }
+  if (h.recent[Fault::wrong_sensor_packets] > 0)
+    m.label("lilo_sensor_refused_info", "The sensor whose packets are refused.", "model",
+            h.sensor.refused.model_name());
   m.label("lilo_clock_info", "Where the sensor's stamps come from.", "source", to_string(h.clock));
   m.counter("lilo_clock_steps_total", "Times the computer's UTC was set.", h.clock_steps);
 }

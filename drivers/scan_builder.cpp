@@ -103,6 +103,7 @@ void ScanBuilder::use_calibration(const Calibration& calibration) {
 SensorStatus ScanBuilder::status() const {
   const Impl& impl = *impl_;
   SensorStatus status{.model = impl.seen_model,
+                      .configured = impl.model,
                       .clock = impl.clock.source(),
                       .sensor_ipv4 = impl.sensor_ipv4};
   status.refused = impl.refused;
