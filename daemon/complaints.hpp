@@ -4,6 +4,7 @@
 
 #include <boost/container/static_vector.hpp>
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -17,6 +18,7 @@ enum class Complaint : std::uint8_t {
   waiting_for_calibration,
   lost,
   degraded,
+  wrong_sensor,
   second_sensor,
   packets_lost,
   kernel_dropped,
@@ -32,7 +34,7 @@ enum class Complaint : std::uint8_t {
   config_bad,
   metrics_not_written,
 };
-inline constexpr std::size_t kComplaintCount = 20;
+inline constexpr std::size_t kComplaintCount = 21;
 
 /// In the order of the enumeration.
 using Complaints = boost::container::static_vector<Complaint, kComplaintCount>;
@@ -43,9 +45,15 @@ Complaints complaints(const Health& health);
 
 /// What is said of it while it goes on.
 Complaint complaint_of(Fault fault);
+/// Of the counts in `health`, those that are faults.
+FaultCounts fault_totals(const Health& health);
 
 /// For people: "packets lost".
 std::string_view words(Complaint complaint);
+/// The same with what is known of it, and no allocation: "packets of a VLP-32C (product byte 0x28)
+/// refused, configured is VLP-16: set sensor.model". May live in `buffer`.
+using WordsBuffer = std::array<char, 128>;
+std::string_view words(Complaint complaint, const Health& health, WordsBuffer& buffer);
 /// For programs: "packets_lost".
 std::string_view slug(Complaint complaint);
 

@@ -41,6 +41,7 @@ void write_packets(JsonWriter& out, const Health& h) {
   out.unsigned_integer("duplicated", h.driver.packets_duplicated);
   out.unsigned_integer("reordered", h.driver.packets_reordered);
   out.unsigned_integer("foreign", h.driver.foreign_packets);
+  out.unsigned_integer("wrong_sensor", h.driver.wrong_sensor_packets);
   out.end_object();
 }
 
@@ -85,8 +86,10 @@ void write_sensor(JsonWriter& out, const SensorStatus& sensor) {
 
 void write_complaints(JsonWriter& out, const Health& h, std::size_t at_most) {
   const Complaints all = complaints(h);
+  WordsBuffer buffer;
   out.begin_array("complaints");
-  for (std::size_t k = 0; k < std::min(all.size(), at_most); ++k) out.item(words(all[k]));
+  for (std::size_t k = 0; k < std::min(all.size(), at_most); ++k)
+    out.item(words(all[k], h, buffer));
   if (all.size() > at_most) out.item("more");
   out.end_array();
 }

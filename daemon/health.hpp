@@ -21,12 +21,13 @@ enum class Flow : std::uint8_t {
   no_poses,    ///< scans come, but the worker has finished none for two seconds
 };
 
-/// What can go wrong again and again, and is counted.
+/// What can go wrong again and again, and is counted. In the order in which it is told.
 enum class Fault : std::uint8_t {
+  wrong_sensor_packets,
+  foreign_packets,
   packets_lost,
   kernel_dropped,
   malformed_packets,
-  foreign_packets,
   receive_errors,
   sensor_restarts,
   scans_dropped,
@@ -35,7 +36,7 @@ enum class Fault : std::uint8_t {
   send_errors,
   clock_steps,
 };
-inline constexpr std::size_t kFaultCount = 11;
+inline constexpr std::size_t kFaultCount = 12;
 
 /// Of each Fault, how many.
 struct FaultCounts {

@@ -1,6 +1,7 @@
 #include "daemon/health_monitor.hpp"
 
 #include "daemon/clock.hpp"
+#include "daemon/complaints.hpp"
 
 #include <algorithm>
 #include <array>
@@ -39,22 +40,6 @@ double resident_mb() {
   long pages = 0;
   if (space != end) std::from_chars(space + 1, end, pages);
   return static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
-}
-
-FaultCounts fault_totals(const Health& h) {
-  FaultCounts out;
-  out[Fault::packets_lost] = h.driver.packets_lost;
-  out[Fault::kernel_dropped] = h.source.kernel_dropped;
-  out[Fault::malformed_packets] = h.driver.malformed_packets;
-  out[Fault::foreign_packets] = h.driver.foreign_packets;
-  out[Fault::receive_errors] = h.source.receive_errors;
-  out[Fault::sensor_restarts] = h.driver.sensor_restarts;
-  out[Fault::scans_dropped] = h.scans_dropped;
-  out[Fault::map_refused] = h.map_refused;
-  out[Fault::poses_not_sent] = h.poses_not_sent;
-  out[Fault::send_errors] = h.send_errors;
-  out[Fault::clock_steps] = h.clock_steps;
-  return out;
 }
 
 }  // namespace

@@ -98,24 +98,42 @@ void write_state(Metrics& m, const std::string& session, const Health& h) {
     m.label("lilo_sensor_info", "The sensor that is heard.", "model", to_string(h.sensor.model));
     m.gauge("lilo_sensor_rpm", "Revolutions a minute, by its azimuths.", h.sensor.rpm);
   }
+  if (h.recent[Fault::wrong_sensor_packets] > 0)
+    m.label("lilo_sensor_refused_info", "The sensor whose packets are refused.", "model",
+            h.sensor.refused.model_name());
   m.label("lilo_clock_info", "Where the sensor's stamps come from.", "source", to_string(h.clock));
   m.counter("lilo_clock_steps_total", "Times the computer's UTC was set.", h.clock_steps);
 }
 
 void write_packets(Metrics& m, const Health& h) {
-  m.counter("lilo_packets_received_total", "Data packets used.", h.driver.data_packets);
+  const DriverCounts& driver = h.driver;
+  m.counter("lilo_packets_received_total", "Data packets used.", driver.data_packets);
   m.counter("lilo_packets_expected_total", "Data packets by the sensor's own stamps.",
-            h.driver.data_packets + h.driver.packets_lost);
-  m.counter("lilo_packets_lost_total", "Data packets that never came.", h.driver.packets_lost);
+            driver.data_packets + driver.packets_lost);
+  m.counter("lilo_packets_lost_total", "Data packets that never came.", driver.packets_lost);
+  m.counter("lilo_packets_duplicated_total", "Data packets that came again, ignored.",
+            driver.packets_duplicated);
+  m.counter("lilo_packets_reordered_total", "Data packets that were overtaken.",
+            driver.packets_reordered);
+  m.counter("lilo_packets_late_total", "Of those overtaken, those too late for their scan.",
+            driver.packets_late);
+  m.counter("lilo_packets_blind_total", "Never sent, but missed before that was known.",
+            driver.packets_blind);
+  m.counter("lilo_packets_waiting_total", "Data packets before the calibration was known.",
+            driver.waiting_packets);
+  m.counter("lilo_packets_position_total", "Packets that tell the time.", driver.position_packets);
   m.counter("lilo_packets_kernel_dropped_total", "Packets the socket had no room for.",
             h.source.kernel_dropped);
-  m.counter("lilo_packets_foreign_total", "Packets of a second sensor.", h.driver.foreign_packets);
+  m.counter("lilo_packets_foreign_total", "Packets of a second sensor.", driver.foreign_packets);
+  m.counter("lilo_packets_wrong_sensor_total", "Packets of another model, refused.",
+            driver.wrong_sensor_packets);
   m.counter("lilo_receive_errors_total", "Failures to read from the sockets.",
             h.source.receive_errors);
   m.counter("lilo_packets_malformed_total", "Packets that are no sensor's.",
-            h.driver.malformed_packets);
+            driver.malformed_packets);
   m.counter("lilo_sensor_restarts_total", "Times the sensor's clock jumped.",
-            h.driver.sensor_restarts);
+            driver.sensor_restarts);
+  m.counter("lilo_sensor_stalls_total", "Times its head did not come round.", driver.stalls);
 }
 
 void write_scans(Metrics& m, const Health& h) {

@@ -1,7 +1,10 @@
 #include "daemon/server.hpp"
 
 #include "daemon/clock.hpp"
+<<<<<<< HEAD
 #include "daemon/message_head.hpp"
+=======
+>>>>>>> h1
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/address.hpp>
@@ -19,7 +22,6 @@ namespace ip = boost::asio::ip;
 using boost::system::error_code;
 
 constexpr int kAnswersPerSecond = 200, kAnswersToUnprovenPerSecond = 50;
-constexpr const char* kSoftware = "lilod " LILO_VERSION;
 constexpr double kShortestLeaseS = 1.0;
 
 // Whom a token belongs to.
@@ -40,7 +42,7 @@ Server::Server(boost::asio::io_context& io, const SubscribeConfig& config,
     : socket_(io),
       config_(config),
       allow_(config.allow),
-      publish_(publish),
+      writer_(publish, actions.session),
       actions_(std::move(actions)),
       clients_(static_cast<std::size_t>(config.max_clients),
                static_cast<std::size_t>(config.points_clients)),
@@ -96,9 +98,10 @@ void Server::handle(std::string_view datagram) {
   request_bytes_ = datagram.size();
   const ParsedRequest parsed = parse_request(datagram);
   if (!is_proven(parsed)) {
-    answer_unproven(parsed.request ? write_token() : write_error(parsed.error));
+    answer_unproven(parsed.request ? writer_.token(tokens_.make(who(from_), monotonic_ns()))
+                                   : writer_.error(parsed.error));
   } else if (!parsed.request) {
-    if (answers_left_ > 0) say_error(parsed.error);
+    if (answers_left_ > 0) answer(writer_.error(parsed.error));
   } else if (may_be_served(*parsed.request)) {
     serve(*parsed.request);
   }
@@ -116,25 +119,19 @@ void Server::serve(const Request& request) {
       return;
     case RequestKind::unsubscribe:
       clients_.remove(from_);
-      say_hello(0.0);
+      answer(writer_.hello(0.0));
       return;
     case RequestKind::query:
       answer_query(request.query);
       return;
     case RequestKind::reset:
-      if (!actions_.reset(request.start_pose)) {
-        say_error("a reset is under way");
-        return;
-      }
-      begin(json_);
-      json_.begin_object("done");
-      json_.text("request", "reset");
-      json_.end_object();
-      answer(json_.finish());
+      answer(actions_.reset(request.start_pose) ? writer_.reset_done()
+                                                : writer_.error("a reset is under way"));
       return;
     case RequestKind::save:
-      actions_.save(request.save,
-                    [this, to = from_](const SaveResult& result) { say_saved(result, to); });
+      actions_.save(request.save, [this, to = from_](const SaveResult& result) {
+        answer(writer_.saved(result), to);
+      });
       return;
   }
 }
@@ -146,43 +143,27 @@ void Server::subscribe(const Request& request) {
       clients_.renew(from_, monotonic_ns() + to_ns(ttl_s), request.points);
   if (client == nullptr) {
     ++clients_refused_;
-    say_error("too many clients");
+    answer(writer_.error("too many clients"));
   } else if (answers_left_ > 0) {
-    say_hello(ttl_s, client->has_points);
+    const PointsGranted points{config_.scan_points, config_.map_points};
+    answer(writer_.hello(ttl_s, client->has_points ? std::optional(points) : std::nullopt));
   }
-}
-
-void Server::say_saved(const SaveResult& result, const Endpoint& to) {
-  if (!result.error.empty()) {
-    say_error(result.error, to);
-    return;
-  }
-  begin(json_);
-  json_.begin_object("done");
-  json_.text("request", "save");
-  json_.text("file", result.file);
-  json_.unsigned_integer("count", result.count);
-  json_.end_object();
-  answer(json_.finish(), to);
 }
 
 void Server::answer_query(const std::string& query) {
   if (query == "hello") {
-    say_hello(0.0);
+    answer(writer_.hello(0.0));
   } else if (query == "health") {
     answer(actions_.health());
   } else if (query == "pose") {
     const std::string_view pose = actions_.last_pose();
-    if (pose.empty()) {
-      say_error("no pose yet");
-    } else {
-      answer(pose);
-    }
+    answer(pose.empty() ? writer_.error("no pose yet") : pose);
   } else {
-    say_error("query: expected \"hello\", \"pose\" or \"health\"");
+    answer(writer_.error("query: expected \"hello\", \"pose\" or \"health\""));
   }
 }
 
+<<<<<<< HEAD
 void Server::begin(JsonWriter& out) { begin_message(out, realtime_ns(), actions_.session()); }
 
 void Server::say_hello(double ttl_s, bool points) {
@@ -222,6 +203,8 @@ std::string_view Server::write_error(std::string_view why) {
   return json_.finish();
 }
 
+=======
+>>>>>>> h1
 void Server::answer(std::string_view datagram, const Endpoint& to) {
   --answers_left_;
   send_to(datagram, to);

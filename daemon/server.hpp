@@ -2,8 +2,8 @@
 
 #include "config/config.hpp"
 #include "daemon/allow_list.hpp"
+#include "daemon/answer_writer.hpp"
 #include "daemon/client_table.hpp"
-#include "daemon/json_writer.hpp"
 #include "daemon/request.hpp"
 #include "daemon/saver.hpp"
 #include "daemon/token.hpp"
@@ -66,16 +66,9 @@ class Server {
   void serve(const Request& request);
   void subscribe(const Request& request);
   void answer_query(const std::string& query);
-  void say_saved(const SaveResult& result, const Endpoint& to);
   [[nodiscard]] bool is_known(const Endpoint& from) const;
   [[nodiscard]] bool is_proven(const ParsedRequest& parsed) const;
   [[nodiscard]] bool may_be_served(const Request& request) const;
-  void say_hello(double ttl_s, bool points = false);
-  void say_error(std::string_view why) { say_error(why, from_); }
-  void say_error(std::string_view why, const Endpoint& to);
-  std::string_view write_token();
-  std::string_view write_error(std::string_view why);
-  void begin(JsonWriter& out);
   void answer(std::string_view datagram) { answer(datagram, from_); }
   void answer(std::string_view datagram, const Endpoint& to);
   void answer_unproven(std::string_view datagram);
@@ -84,13 +77,12 @@ class Server {
   boost::asio::ip::udp::socket socket_;
   SubscribeConfig config_;
   AllowList allow_;
-  PublishConfig publish_;
+  AnswerWriter writer_;
   ServerActions actions_;
   ClientTable clients_;
   TokenMaker tokens_;
   Endpoint from_;
   std::array<char, kMaxRequestBytes + 1> buffer_{};  // one more byte tells an oversized request
-  JsonWriter json_;
   std::size_t request_bytes_ = 0;
   int answers_left_ = 0, answers_to_unproven_left_ = 0;  // this second
   std::uint64_t clients_refused_ = 0, send_errors_ = 0;

@@ -90,6 +90,7 @@ void Story::session_replaced(const std::string& before, const std::string& now, 
 
 void Story::second(const Health& h) {
   tell_sensor(h);
+  tell_wrong_sensor(h);
   tell_second_sensor(h);
   tell_calibration(h.sensor);
   tell_flow(h);
@@ -108,6 +109,20 @@ void Story::tell_sensor(const Health& h) {
                                           to_string(now.model), dotted(now.sensor_ipv4), now.rpm,
                                           to_string(now.return_mode), to_string(now.clock)));
   if (told) sensor_ = now;
+}
+
+// Once while they come, and again when they are of yet another model.
+void Story::tell_wrong_sensor(const Health& h) {
+  const RefusedSensor& now = h.sensor.refused;
+  if (h.recent[Fault::wrong_sensor_packets] == 0) {
+    wrong_sensor_ = {};
+    return;
+  }
+  const bool same = now.model == wrong_sensor_.model && now.product_id == wrong_sensor_.product_id;
+  if (wrong_sensor_.packets > 0 && same) return;
+  WordsBuffer buffer;
+  if (log_event(Event::sensor_refused, words(Complaint::wrong_sensor, h, buffer)))
+    wrong_sensor_ = now;
 }
 
 void Story::tell_second_sensor(const Health& h) {
@@ -251,7 +266,9 @@ void Story::tell_faults(const Health& h) {
   for (std::size_t k = 0; k < kFaultCount; ++k) {
     const auto fault = static_cast<Fault>(k);
     // These have lines of their own.
-    if (fault == Fault::clock_steps || fault == Fault::foreign_packets) continue;
+    if (fault == Fault::clock_steps || fault == Fault::foreign_packets ||
+        fault == Fault::wrong_sensor_packets)
+      continue;
     const std::uint64_t now = h.totals[fault], before = faults_[fault];
     if (now > before)
       fmt::format_to(std::back_inserter(text), "{}{} {}", text.empty() ? "" : ", ",

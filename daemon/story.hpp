@@ -37,6 +37,7 @@ class Story {
 
   void note_relocalization(const PoseReport& report);
   void tell_sensor(const Health& h);
+  void tell_wrong_sensor(const Health& h);
   void tell_second_sensor(const Health& h);
   void tell_flow(const Health& h);
   void tell_tracking();
@@ -57,6 +58,7 @@ class Story {
 
   // What was told last, and since when it has been so.
   SensorStatus sensor_;
+  RefusedSensor wrong_sensor_;  // none: nothing of it was told
   bool second_sensor_ = false;
   Flow flow_ = Flow::all;
   Flow flow_seen_ = Flow::all;

@@ -35,6 +35,7 @@ ScanAssembler::ScanAssembler(const SensorConfig& config, Scan& target, ScanSink&
       scan_(&target),
       sink_(sink) {}
 
+// How many of the `missing` packets before this one are lost, and not of a blind sector.
 std::uint32_t ScanAssembler::without_blind(const PacketDecoder& decoder, std::int64_t line_ns,
                                            std::uint32_t missing) {
   if (missing == 0 || !has_column_) return missing;
@@ -53,12 +54,15 @@ void ScanAssembler::describe(SensorStatus& status) const {
   status.blind_width_rad = sector->width_ticks * wire::kRadPerTick;
 }
 
-void ScanAssembler::add(const PacketDecoder& decoder, std::int64_t line_ns,
-                        PacketSequence::Verdict verdict, SensorClock& clock) {
+ScanAssembler::Loss ScanAssembler::add(const PacketDecoder& decoder, std::int64_t line_ns,
+                                       std::uint32_t missing, SensorClock& clock) {
+  const std::uint32_t lost = without_blind(decoder, line_ns, missing);
+  const std::uint64_t never_sent = blind_.take_miscounted();
   follow_direction(decoder.ticks_per_ns(), clock);
-  if (verdict.lost > 0) spread_loss(verdict.lost, decoder.packet_period_ns(), line_ns);
+  if (lost > 0) spread_loss(lost, decoder.packet_period_ns(), line_ns);
   for (std::size_t i = 0; i < decoder.columns().size(); ++i) add_column(decoder, i, line_ns, clock);
   if (in_scan_) ++counts_.received;
+  return {lost, never_sent};
 }
 
 bool ScanAssembler::add_late(const PacketDecoder& decoder, std::int64_t line_ns) {

@@ -4,7 +4,6 @@
 #include "drivers/blind_sector.hpp"
 #include "drivers/coverage.hpp"
 #include "drivers/packet_decoder.hpp"
-#include "drivers/packet_sequence.hpp"
 #include "drivers/scan_builder.hpp"
 #include "drivers/sensor_clock.hpp"
 #include "drivers/sensor_status.hpp"
@@ -20,16 +19,16 @@ class ScanAssembler {
  public:
   ScanAssembler(const SensorConfig& config, Scan& target, ScanSink& sink);
 
-  /// How many of the `missing` packets before this new one are lost, and not of a blind sector. To
-  /// be asked before add().
-  std::uint32_t without_blind(const PacketDecoder& decoder, std::int64_t line_ns,
-                              std::uint32_t missing);
-  /// See BlindSector.
-  std::uint64_t take_miscounted_as_lost() { return blind_.take_miscounted(); }
   void describe(SensorStatus& status) const;
 
-  /// A packet that is new (first, next or restart). `line_ns` is its stamp on the sensor's line.
-  void add(const PacketDecoder& decoder, std::int64_t line_ns, PacketSequence::Verdict verdict,
+  /// What a new packet tells of those before it.
+  struct Loss {
+    std::uint32_t lost = 0;        ///< of those that are missing; the others are of a blind sector
+    std::uint64_t never_sent = 0;  ///< counted as lost before the blind sector was known
+  };
+  /// A packet that is newer than all before. `line_ns` is its stamp on the sensor's line, `missing`
+  /// how many packets were due between the one before and this one.
+  Loss add(const PacketDecoder& decoder, std::int64_t line_ns, std::uint32_t missing,
            SensorClock& clock);
   /// A packet that was overtaken: what belongs to the scan being written is put in its place.
   /// False when it had been counted as lost in a scan that was handed on before.
@@ -48,6 +47,8 @@ class ScanAssembler {
  private:
   void add_column(const PacketDecoder& decoder, std::size_t column, std::int64_t line_ns,
                   SensorClock& clock);
+  [[nodiscard]] std::uint32_t without_blind(const PacketDecoder& decoder, std::int64_t line_ns,
+                                            std::uint32_t missing);
   void spread_loss(std::uint32_t lost, double period_ns, std::int64_t line_ns);
   void follow_direction(double ticks_per_ns, const SensorClock& clock);
   [[nodiscard]] Coverage::Hole largest_hole() const;

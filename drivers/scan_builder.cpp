@@ -19,6 +19,12 @@ namespace {
 // A sensor that was silent for so long may be replaced by another one on the same network.
 constexpr std::int64_t kReplaceableNs = 2'000'000'000;
 
+enum class Outcome : std::uint8_t {
+  used,
+  refused,  // of another model
+  malformed,
+};
+
 // Throws where the configured sensor cannot have this calibration.
 std::optional<Calibration> configured_calibration(const SensorConfig& config) {
   if (config.calibration_file.empty()) return std::nullopt;
@@ -50,18 +56,18 @@ struct ScanBuilder::Impl {
 
   void feed(const PacketView& packet);
   bool is_followed(const PacketView& packet);
-  bool feed_data(const PacketView& packet);
-  bool feed_position(const PacketView& packet);
+  Outcome feed_data(const PacketView& packet);
+  Outcome feed_position(const PacketView& packet);
   [[nodiscard]] const SensorTable* accept(const SensorIdentity& identity,
                                           std::int64_t received_ns) const;
   void refuse(const SensorIdentity& identity);
   void follow(const SensorTable& table);
   bool feed_vlp(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
   bool feed_hdl64e(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
-  PacketSequence::Verdict sort(std::uint32_t stamp_us, std::int64_t received_ns,
-                               std::int64_t& line_ns);
-  void forgive_blind();
-  void assemble(std::int64_t line_ns, PacketSequence::Verdict verdict);
+  std::optional<std::uint32_t> place(std::uint32_t stamp_us, std::int64_t line_ns,
+                                     std::int64_t received_ns);
+  void restart_line(std::uint32_t stamp_us, std::int64_t received_ns);
+  std::uint32_t add_newest(std::int64_t line_ns, std::uint32_t missing);
 
   SensorModel model;
   bool ignore_product;
@@ -96,8 +102,10 @@ void ScanBuilder::use_calibration(const Calibration& calibration) {
 
 SensorStatus ScanBuilder::status() const {
   const Impl& impl = *impl_;
-  SensorStatus status{
-      .model = impl.seen_model, .clock = impl.clock.source(), .sensor_ipv4 = impl.sensor_ipv4};
+  SensorStatus status{.model = impl.seen_model,
+                      .configured = impl.model,
+                      .clock = impl.clock.source(),
+                      .sensor_ipv4 = impl.sensor_ipv4};
   status.refused = impl.refused;
   if (impl.seen_model == SensorModel::automatic) return status;
   const SensorTable& table = impl.decoder.table();
@@ -118,13 +126,13 @@ void ScanBuilder::Impl::feed(const PacketView& packet) {
     return;
   }
   const bool on_position_port = position_port != 0 && packet.destination_port == position_port;
-  const bool taken = on_position_port ? feed_position(packet) : feed_data(packet);
-  if (taken) {
-    sensor_ipv4 = packet.source_ipv4;
+  const Outcome outcome = on_position_port ? feed_position(packet) : feed_data(packet);
+  if (outcome == Outcome::malformed) ++counts.malformed_packets;
+  // Data alone: what tells the time does not tell its model, and a sensor that is refused must not
+  // keep out the right one.
+  if (outcome == Outcome::used && !on_position_port) sensor_ipv4 = packet.source_ipv4;
+  if (outcome == Outcome::used && packet.source_ipv4 == sensor_ipv4)
     sensor_heard_ns = packet.received_ns;
-  } else {
-    ++counts.malformed_packets;
-  }
   counts.scans_complete = assembler.scans_complete();
   counts.scans_partial = assembler.scans_partial();
   counts.stalls = assembler.stalls();
@@ -136,36 +144,36 @@ bool ScanBuilder::Impl::is_followed(const PacketView& packet) {
   return std::abs(packet.received_ns - sensor_heard_ns) > kReplaceableNs;
 }
 
-bool ScanBuilder::Impl::feed_position(const PacketView& packet) {
+Outcome ScanBuilder::Impl::feed_position(const PacketView& packet) {
   const auto position = parse_position_packet(packet.payload);
-  if (!position) return false;
+  if (!position) return Outcome::malformed;
   ++counts.position_packets;
   if (position->synchronized())
     clock.gps_fix(position->stamp_us, position->gps->utc_ns, packet.received_ns);
-  return true;
+  return Outcome::used;
 }
 
-bool ScanBuilder::Impl::feed_data(const PacketView& packet) {
-  if (packet.payload.size() != wire::kDataPacketBytes) return false;
+Outcome ScanBuilder::Impl::feed_data(const PacketView& packet) {
+  if (packet.payload.size() != wire::kDataPacketBytes) return Outcome::malformed;
   const DataPacket data = packet.payload.first<wire::kDataPacketBytes>();
   const std::uint32_t stamp_us = wire::u32(data.data() + wire::kStampOffset);
-  if (stamp_us > wire::kMaxStampUs) return false;
-  if (wire::block_flag(data.data(), 0) != wire::kUpperFlag) return false;
+  if (stamp_us > wire::kMaxStampUs) return Outcome::malformed;
+  if (wire::block_flag(data.data(), 0) != wire::kUpperFlag) return Outcome::malformed;
   const SensorIdentity identity = identify(data);
   const SensorTable* table = accept(identity, packet.received_ns);
   if (table == nullptr) {
     refuse(identity);
-    return true;
+    return Outcome::refused;
   }
   if (table != &decoder.table()) follow(*table);
   const bool good = table->model == SensorModel::hdl64e
                         ? feed_hdl64e(data, stamp_us, packet.received_ns)
                         : feed_vlp(data, stamp_us, packet.received_ns);
-  if (!good) return false;
+  if (!good) return Outcome::malformed;
   ++counts.data_packets;
   seen_model = table->model;
   model_heard_ns = packet.received_ns;
-  return true;
+  return Outcome::used;
 }
 
 // The table to read a packet with, null to refuse it. Old firmware leaves the product byte to
@@ -209,88 +217,77 @@ void ScanBuilder::Impl::follow(const SensorTable& table) {
 bool ScanBuilder::Impl::feed_vlp(DataPacket data, std::uint32_t stamp_us,
                                  std::int64_t received_ns) {
   if (!decoder.load(data)) return false;
-  std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
-  const auto verdict = sort(stamp_us, received_ns, line_ns);
-  assemble(line_ns, verdict);
+  place(stamp_us, clock.unwrap(stamp_us, received_ns), received_ns);
   return true;
 }
 
 bool ScanBuilder::Impl::feed_hdl64e(DataPacket data, std::uint32_t stamp_us,
                                     std::int64_t received_ns) {
-  using Arrival = PacketSequence::Arrival;
-  std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
+  const std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
   if (!hdl64e.load(data, line_ns)) return false;
   if (!hdl64e.times_known()) {
     ++counts.waiting_packets;
     sequence.restart_at(line_ns, received_ns);  // or those that waited would count as lost
     return true;
   }
-  const auto verdict = sort(stamp_us, received_ns, line_ns);
-  if (verdict.arrival == Arrival::restart) {
-    hdl64e.restart();
-    return true;
-  }
-  if (hdl64e.is_ready()) {
-    assemble(line_ns, verdict);
-  } else {
-    ++counts.waiting_packets;
-  }
-  const bool in_order = verdict.arrival == Arrival::first || verdict.arrival == Arrival::next;
-  if (in_order && hdl64e.see_status(data, verdict.lost, stamp_us, received_ns, clock))
+  const auto lost = place(stamp_us, line_ns, received_ns);
+  if (lost && hdl64e.see_status(data, *lost, stamp_us, received_ns, clock))
     assembler.interrupt(clock);
   return true;
 }
 
-// `line_ns` becomes another one where the sensor's clock jumped: the old line ends there.
-PacketSequence::Verdict ScanBuilder::Impl::sort(std::uint32_t stamp_us, std::int64_t received_ns,
-                                                std::int64_t& line_ns) {
-  auto verdict =
+// What became of the packet that the decoder holds: the one place where it is counted and put into
+// its scan. Returns how many were lost right before it; nothing where the order of arrival does not
+// tell.
+std::optional<std::uint32_t> ScanBuilder::Impl::place(std::uint32_t stamp_us, std::int64_t line_ns,
+                                                      std::int64_t received_ns) {
+  const auto [arrival, missing] =
       sequence.see(line_ns, received_ns, decoder.packet_period_ns(), decoder.inner_gap_ns());
-  switch (verdict.arrival) {
+  if (arrival == PacketSequence::Arrival::restart) {
+    restart_line(stamp_us, received_ns);
+    return std::nullopt;
+  }
+  const bool has_returns = decoder.table().model != SensorModel::hdl64e || hdl64e.is_ready();
+  if (!has_returns) ++counts.waiting_packets;
+  switch (arrival) {
     case PacketSequence::Arrival::duplicate:
       ++counts.packets_duplicated;
-      break;
+      if (has_returns) assembler.note_duplicate();
+      return std::nullopt;
     case PacketSequence::Arrival::late:
       ++counts.packets_reordered;
       counts.packets_lost -= std::min<std::uint64_t>(counts.packets_lost, 1);
-      break;
-    case PacketSequence::Arrival::restart:
-      ++counts.sensor_restarts;
-      assembler.interrupt(clock);
-      clock.restart();
-      line_ns = clock.unwrap(stamp_us, received_ns);
-      sequence.restart_at(line_ns, received_ns);
-      break;
-    case PacketSequence::Arrival::first:
-    case PacketSequence::Arrival::next:
-      verdict.lost = assembler.without_blind(decoder, line_ns, verdict.lost);
-      counts.packets_lost += verdict.lost;
-      forgive_blind();
-      break;
-  }
-  return verdict;
-}
-
-// What was due in a blind sector was counted as lost until the sector was known.
-void ScanBuilder::Impl::forgive_blind() {
-  const std::uint64_t miscounted =
-      std::min(counts.packets_lost, assembler.take_miscounted_as_lost());
-  counts.packets_lost -= miscounted;
-  counts.packets_blind += miscounted;
-}
-
-void ScanBuilder::Impl::assemble(std::int64_t line_ns, PacketSequence::Verdict verdict) {
-  switch (verdict.arrival) {
-    case PacketSequence::Arrival::duplicate:
-      assembler.note_duplicate();
-      break;
-    case PacketSequence::Arrival::late:
-      if (!assembler.add_late(decoder, line_ns)) ++counts.packets_late;
-      break;
+      if (has_returns && !assembler.add_late(decoder, line_ns)) ++counts.packets_late;
+      return std::nullopt;
     default:
-      assembler.add(decoder, line_ns, verdict, clock);
-      break;
+      if (has_returns) return add_newest(line_ns, missing);
+      counts.packets_lost += missing;
+      return missing;
   }
+}
+
+// The sensor's clock jumped: the old line ends here.
+void ScanBuilder::Impl::restart_line(std::uint32_t stamp_us, std::int64_t received_ns) {
+  ++counts.sensor_restarts;
+  assembler.interrupt(clock);
+  clock.restart();
+  const std::int64_t line_ns = clock.unwrap(stamp_us, received_ns);
+  sequence.restart_at(line_ns, received_ns);
+  if (decoder.table().model == SensorModel::hdl64e) {
+    hdl64e.restart();
+  } else {
+    add_newest(line_ns, 0);
+  }
+}
+
+// Returns how many of the `missing` packets before it are lost.
+std::uint32_t ScanBuilder::Impl::add_newest(std::int64_t line_ns, std::uint32_t missing) {
+  const ScanAssembler::Loss loss = assembler.add(decoder, line_ns, missing, clock);
+  counts.packets_lost += loss.lost;
+  const std::uint64_t blind = std::min(counts.packets_lost, loss.never_sent);
+  counts.packets_lost -= blind;
+  counts.packets_blind += blind;
+  return loss.lost;
 }
 
 }  // namespace lilo

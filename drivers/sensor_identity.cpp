@@ -27,20 +27,26 @@ SensorIdentity identify(DataPacket packet) {
 
 bool is_product(std::uint8_t product) { return !product_name(product).empty(); }
 
-std::string product_name(std::uint8_t product) {
+std::string_view product_name(std::uint8_t product) {
   if (const SensorTable* table = find_product(product)) return table->name;
   for (const Other& other : kOthers)
     if (other.product == product) return other.name;
   return {};
 }
 
-std::string RefusedSensor::name() const {
+std::string_view RefusedSensor::model_name() const {
   if (packets == 0) return {};
   if (model == SensorModel::hdl64e) return find_sensor(model)->name;
-  const std::string known = product_name(product_id);
+  const std::string_view known = product_name(product_id);
+  return known.empty() ? "unknown sensor" : known;
+}
+
+std::string RefusedSensor::name() const {
+  std::string name(model_name());
+  if (name.empty() || model == SensorModel::hdl64e) return name;
   std::array<char, 32> byte{};
   std::snprintf(byte.data(), byte.size(), " (product byte 0x%02X)", product_id);
-  return (known.empty() ? "unknown sensor" : known) + byte.data();
+  return name + byte.data();
 }
 
 }  // namespace lilo

@@ -4,7 +4,7 @@
 #include "drivers/sensor_table.hpp"
 
 #include <cstdint>
-#include <string>
+#include <string_view>
 
 namespace lilo {
 
@@ -21,6 +21,6 @@ SensorIdentity identify(DataPacket packet);
 bool is_product(std::uint8_t product);
 
 /// "VLP-32C", "Puck Hi-Res", also of sensors that cannot be read here; empty: not known.
-std::string product_name(std::uint8_t product);
+std::string_view product_name(std::uint8_t product);
 
 }  // namespace lilo

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace lilo {
 
@@ -26,14 +27,17 @@ struct RefusedSensor {
   SensorModel model = SensorModel::automatic;  ///< automatic: of none that is known here
   std::uint8_t product_id = 0;                 ///< 0: HDL-64E
 
+  /// "VLP-32C", "unknown sensor"; empty while none was refused.
+  [[nodiscard]] std::string_view model_name() const;
   /// "VLP-32C (product byte 0x28)"; empty while none was refused.
   [[nodiscard]] std::string name() const;
 };
 
 /// What is known of the sensor. Zero where nothing is.
 struct SensorStatus {
-  SensorModel model = SensorModel::automatic;  ///< automatic: no packet of a known model yet
-  std::uint8_t product_id = 0;                 ///< as in SensorTable: VLP-16 0x22; HDL-64E: 0
+  SensorModel model = SensorModel::automatic;       ///< automatic: no packet of a known model yet
+  SensorModel configured = SensorModel::automatic;  ///< SensorConfig::model
+  std::uint8_t product_id = 0;                      ///< as in SensorTable: VLP-16 0x22; HDL-64E: 0
   ReturnMode return_mode = ReturnMode::strongest;
   double rpm = 0.0;
   double packet_period_us = 0.0;  ///< HDL-64E: 0 until it is measured
@@ -46,7 +50,7 @@ struct SensorStatus {
   std::uint64_t calibrations_refused = 0;  ///< tables whose checksum or values were wrong
   std::uint8_t firmware = 0;               ///< HDL-64E: 0x47 is 4.07
   std::uint8_t temperature_c = 0;          ///< HDL-64E
-  std::uint32_t sensor_ipv4 = 0;           ///< host byte order
+  std::uint32_t sensor_ipv4 = 0;           ///< of the data packets in use; host byte order
   RefusedSensor refused;
 };
 

@@ -73,8 +73,18 @@ TEST(Health, SaysEverythingInOneDatagram) {
 TEST(Health, NeverOutgrowsTheDatagram) {
   Health h = a_health();
   const std::uint64_t huge = std::numeric_limits<std::uint32_t>::max() * std::uint64_t{1000};
-  h.driver = {huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge, huge};
-  h.source = {huge, huge, huge, huge, huge, huge};
+  h.driver = {.data_packets = huge,
+              .malformed_packets = huge,
+              .packets_lost = huge,
+              .packets_duplicated = huge,
+              .packets_reordered = huge,
+              .scans_complete = huge,
+              .scans_partial = huge,
+              .sensor_restarts = huge,
+              .foreign_packets = huge,
+              .wrong_sensor_packets = huge};
+  h.source = {.kernel_dropped = huge, .receive_errors = huge};
+  h.sensor.refused = {.packets = huge, .product_id = 0x23};
   h.instance = std::string(32, 'x');
   h.map_refused = h.clock_steps = huge;
   h.scans_processed = h.scans_dropped = h.poses_sent = h.poses_not_sent = h.send_errors = huge;
@@ -161,6 +171,116 @@ TEST(Health, SaysThatTheMapIsFullAndThatSocketsFail) {
                            "lilo_complaint{instance=\"front\",kind=\"map_full\"} 1",
                            "lilo_complaint{instance=\"front\",kind=\"packets_lost\"} 0"}) {
     EXPECT_NE(text.find('\n' + std::string(line) + '\n'), std::string::npos) << line;
+  }
+}
+
+// Each count under its own name: a number that reached another's place would be found there.
+TEST(Prometheus, NamesEveryCountOfTheDrivers) {
+  Health h = a_health();
+  h.driver = {.data_packets = 101,
+              .position_packets = 102,
+              .malformed_packets = 103,
+              .packets_lost = 104,
+              .packets_duplicated = 105,
+              .packets_reordered = 106,
+              .packets_late = 107,
+              .packets_blind = 108,
+              .scans_complete = 109,
+              .scans_partial = 110,
+              .sensor_restarts = 111,
+              .stalls = 112,
+              .foreign_packets = 113,
+              .wrong_sensor_packets = 114,
+              .waiting_packets = 115};
+  static_assert(sizeof(DriverCounts) == 15 * sizeof(std::uint64_t), "name the new one here");
+  std::string text;
+  write_prometheus("0123456789abcdef", h, text);
+  int expected = 101;
+  for (const char* name :
+       {"packets_received", "packets_position", "packets_malformed", "packets_lost",
+        "packets_duplicated", "packets_reordered", "packets_late", "packets_blind",
+        "scans_complete", "scans_partial", "sensor_restarts", "sensor_stalls", "packets_foreign",
+        "packets_wrong_sensor", "packets_waiting"}) {
+    const std::string line = "\nlilo_" + std::string(name) + "_total{instance=\"front\"} " +
+                             std::to_string(expected++) + '\n';
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  }
+}
+
+/// What health says of a sensor that is refused, as JSON and for Prometheus.
+struct Refusal {
+  SensorModel configured, followed;
+  RefusedSensor refused;
+  const char* complaint;
+  const char* label;
+};
+
+TEST(Health, NamesTheSensorThatIsRefusedAndWhatHelps) {
+  constexpr auto kAuto = SensorModel::automatic;
+  const std::array<Refusal, 7> cases{
+      {{SensorModel::vlp16,
+        kAuto,
+        {9, SensorModel::vlp32c, 0x28},
+        "packets of a VLP-32C (product byte 0x28) refused, configured is VLP-16: set sensor.model",
+        "VLP-32C"},
+       {SensorModel::vlp16,
+        kAuto,
+        {9, SensorModel::hdl64e, 0},
+        "packets of an HDL-64E refused, configured is VLP-16: set sensor.model",
+        "HDL-64E"},
+       {kAuto,
+        SensorModel::hdl32e,
+        {9, SensorModel::vlp16, 0x24},
+        "packets of a Puck Hi-Res (product byte 0x24) refused, an HDL-32E is followed: use another "
+        "port",
+        "Puck Hi-Res"},
+       {kAuto,
+        kAuto,
+        {9, kAuto, 0x07},
+        "packets of an unknown sensor (product byte 0x07) refused: set sensor.model",
+        "unknown sensor"},
+       {kAuto,
+        SensorModel::vlp16,
+        {9, kAuto, 0x31},
+        "packets of a Velarray (product byte 0x31) refused: lilod cannot read them",
+        "Velarray"},
+       {kAuto,
+        SensorModel::vlp16,
+        {9, kAuto, 0x77},
+        "packets of an unknown sensor (product byte 0x77) refused, a VLP-16 is followed: use "
+        "another port",
+        "unknown sensor"},
+       {SensorModel::vlp16,
+        SensorModel::vlp16,
+        {9, kAuto, 0x23},
+        "packets of a VLP-32A or VLP-32B (product byte 0x23) refused: lilod cannot read them",
+        "VLP-32A or VLP-32B"}}};
+  for (const Refusal& c : cases) {
+    Health h = a_health();
+    h.recent = {};
+    h.recent[Fault::wrong_sensor_packets] = 5;
+    h.driver.wrong_sensor_packets = 9;
+    h.sensor.model = c.followed;
+    h.sensor.configured = c.configured;
+    h.sensor.refused = c.refused;
+    JsonWriter out;
+    const json m = json::parse(write_health("0123456789abcdef", h, out))["health"];
+    EXPECT_EQ(m["complaints"], json::array({c.complaint}));
+    EXPECT_EQ(m["packets"]["wrong_sensor"], 9);
+    EXPECT_TRUE(m.contains("stages_ms")) << "there is room";
+    std::string text;
+    write_prometheus("0123456789abcdef", h, text);
+    const auto has_line = [&](const std::string& line) {
+      return text.find('\n' + line + '\n') != std::string::npos;
+    };
+    const std::string info = "lilo_sensor_refused_info{instance=\"front\",model=\"";
+    EXPECT_TRUE(has_line(info + c.label + "\"} 1"));
+    EXPECT_TRUE(has_line("lilo_complaint{instance=\"front\",kind=\"wrong_sensor\"} 1"));
+    h.recent = {};
+    write_prometheus("0123456789abcdef", h, text);
+    EXPECT_EQ(text.find(info), std::string::npos) << "they have stopped";
+    EXPECT_TRUE(has_line("lilo_complaint{instance=\"front\",kind=\"wrong_sensor\"} 0"));
+    EXPECT_TRUE(complaints(h).empty());
   }
 }
 

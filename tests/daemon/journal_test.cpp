@@ -155,6 +155,43 @@ TEST_F(StoryTest, TellsHowFarThePredictionWasWrong) {
   EXPECT_NE(found.find(id(Event::relocalized)), std::string::npos);
 }
 
+TEST_F(StoryTest, NamesTheWrongSensorOnceWhileItSends) {
+  second();
+  health_.sensor.configured = SensorModel::vlp16;
+  health_.sensor.refused = {.packets = 100, .model = SensorModel::hdl64e};
+  EXPECT_EQ(second(), "") << "long ago";
+  health_.recent[Fault::wrong_sensor_packets] = 100;
+  health_.totals[Fault::wrong_sensor_packets] = 100;
+  const std::string first = second();
+  for (const std::string& part :
+       {std::string(
+            "MESSAGE=packets of an HDL-64E refused, configured is VLP-16: set sensor.model\n"),
+        id(Event::sensor_refused), std::string("PRIORITY=4")})
+    EXPECT_NE(first.find(part), std::string::npos) << part << " in " << first;
+  EXPECT_EQ(first.find(id(Event::faults)), std::string::npos) << "one line";
+  health_.sensor.refused.packets = 900;
+  EXPECT_EQ(second(), "") << "the same sensor";
+  health_.sensor.refused = {.packets = 901, .model = SensorModel::vlp32c, .product_id = 0x28};
+  EXPECT_NE(second().find("packets of a VLP-32C"), std::string::npos);
+  health_.recent = {};
+  EXPECT_EQ(second(), "");
+  health_.recent[Fault::wrong_sensor_packets] = 1;
+  EXPECT_NE(second().find("packets of a VLP-32C"), std::string::npos) << "it came back";
+}
+
+// Two wrong models by turns are two causes, but no reason to fill the disk.
+TEST_F(StoryTest, WrongSensorsByTurnsDoNotFillTheJournal) {
+  second();
+  health_.recent[Fault::wrong_sensor_packets] = 1;
+  std::size_t lines = 0;
+  for (int k = 0; k < 50; ++k) {
+    health_.sensor.refused = {.packets = 1,
+                              .model = k % 2 == 0 ? SensorModel::hdl32e : SensorModel::hdl64e};
+    if (!second().empty()) ++lines;
+  }
+  EXPECT_EQ(lines, 6U) << "in a minute";
+}
+
 TEST_F(StoryTest, WhatComesAndGoesDoesNotFillTheJournal) {
   second();
   std::size_t lines = 0;

@@ -42,9 +42,11 @@ class Vlp16:
     ELEVATIONS = [-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15]
     _blocks = None
 
-    def __init__(self, port, address="127.0.0.1", source_port=0, to="127.0.0.1", product=0x22):
-        self.port, self.product, self.to = port, product, to
-        self.frozen_azimuth = self.frozen_stamp = self.hdl64e = False
+    def __init__(self, port, address="127.0.0.1", source_port=0, to="127.0.0.1", product=0x22,
+                 hdl64e=False):
+        """With another product byte or the block flags of an HDL-64E it says it is another model."""
+        self.port, self.product, self.to, self.hdl64e = port, product, to, hdl64e
+        self.frozen_azimuth = self.frozen_stamp = False
         self.loss = 0.0
         self.sent = 0
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -232,6 +234,12 @@ health:
                 return json.loads(client.recv(4096))
             except socket.timeout:
                 return None
+
+    def status(self):
+        """Exit code of `lilo status` and what it prints."""
+        done = subprocess.run([binary("lilo"), "status", "--port", str(self.ports["request_port"])],
+                              capture_output=True, text=True, timeout=10)
+        return done.returncode, done.stdout
 
     def stderr(self):
         return open(self.folder + "/stderr").read()

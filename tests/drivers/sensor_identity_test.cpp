@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace lilo {
 namespace {
@@ -99,6 +100,30 @@ TEST(SensorIdentity, PacketsOfASecondModelBetweenAreLeftOut) {
   ASSERT_EQ(mixed.scans.size(), alone.scans.size());
   for (std::size_t k = 0; k < alone.scans.size(); ++k)
     EXPECT_EQ(mixed.scans[k].returns.size(), alone.scans[k].returns.size());
+}
+
+// The wrong sensor comes first, tells the time as well and never stops: it must not be the one
+// whose address is followed.
+TEST(SensorIdentity, ARefusedSensorDoesNotKeepOutTheRightOne) {
+  const auto right = packets_of(SensorModel::vlp16);
+  const auto wrong = packets_of(SensorModel::vlp32c);
+  ASSERT_EQ(right.size(), wrong.size());
+  std::vector<TimedPacket> packets;
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    TimedPacket other = wrong[i];
+    other.received_ns = right[i].received_ns;
+    TimedPacket time = test::position_packet(0, 0, "", other.received_ns);
+    other.source_ipv4 = time.source_ipv4 = right[i].source_ipv4 + 1;
+    packets.push_back(other);
+    packets.push_back(time);
+    packets.push_back(right[i]);
+  }
+  const Outcome out = build_as(SensorModel::vlp16, packets);
+  EXPECT_EQ(out.counts.data_packets, right.size());
+  EXPECT_EQ(out.status.sensor_ipv4, right[0].source_ipv4);
+  EXPECT_EQ(out.counts.wrong_sensor_packets, 1U) << "before there was one to follow";
+  EXPECT_EQ(out.counts.foreign_packets, 2 * (right.size() - 1));
+  EXPECT_EQ(out.counts.packets_lost, 0U);
 }
 
 TEST(SensorIdentity, AnotherModelMayReplaceOneThatIsSilent) {
