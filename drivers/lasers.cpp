@@ -1,5 +1,7 @@
 #include "drivers/lasers.hpp"
 
+#include "drivers/wire.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -63,6 +65,28 @@ void set_lasers(const Calibration& calibration, double step_m, double min_range_
         static_cast<int>(std::min(kMostSteps, std::floor((max_range_m - c.dist_m) / step_m)));
     lasers.ring[i] = static_cast<std::int32_t>(ring);
     set_corrections(c, i, lasers);
+  }
+}
+
+void turn_lasers(const Lasers& lasers, int count, std::span<const std::int32_t> delay_ns,
+                 double ticks_per_ns, LaserAngles& angles) {
+  for (std::size_t i = 0; i < delay_ns.size(); ++i) {
+    const auto a = static_cast<float>(ticks_per_ns * delay_ns[i] * wire::kRadPerTick);
+    angles.rad[i] = a;  // at most 0.1 rad, where these series are exact to float
+    angles.cos[i] = 1.0F - a * a * (0.5F - a * a / 24.0F);
+    angles.sin[i] = a - a * a * a * (1.0F / 6.0F - a * a / 120.0F);
+  }
+  const double last_ns = delay_ns.empty() ? 0 : delay_ns.back();
+  angles.largest_rad = std::abs(static_cast<float>(ticks_per_ns * last_ns * wire::kRadPerTick)) +
+                       lasers.largest_rot_rad;
+  if (lasers.largest_rot_rad <= 0.0F) return;
+  const auto cycle = static_cast<std::size_t>(count);
+  for (std::size_t i = 0; i < delay_ns.size(); ++i) {
+    const std::size_t k = i < cycle ? i : i - cycle;
+    const float cos = angles.cos[i], sin = angles.sin[i];
+    angles.cos[i] = cos * lasers.cos_rot[k] + sin * lasers.sin_rot[k];
+    angles.sin[i] = sin * lasers.cos_rot[k] - cos * lasers.sin_rot[k];
+    angles.rad[i] -= lasers.rot_rad[k];
   }
 }
 

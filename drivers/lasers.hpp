@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace lilo {
 
@@ -37,6 +38,11 @@ struct LaserAngles {
   std::array<float, kMaxRings> cos, sin, rad;
   float largest_rad = 0.0F;
 };
+
+/// The angles when the head turns by `ticks_per_ns`. `delay_ns`: of each angle, after the
+/// block's first firing; `count` lasers, one cycle or two.
+void turn_lasers(const Lasers& lasers, int count, std::span<const std::int32_t> delay_ns,
+                 double ticks_per_ns, LaserAngles& angles);
 
 /// Where near-range corrections were found (manual, dual two point calibration).
 inline constexpr float kFarM = 25.04F, kNearXM = 2.40F, kNearYM = 1.93F;

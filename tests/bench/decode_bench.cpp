@@ -1,11 +1,15 @@
 // How many times faster than the sensor sends are packets decoded and put together to scans, on one
 // core, and what a plain copy of the same packets costs in the same run. "x_sensor" is the factor.
+#include "drivers/sensor_table.hpp"
 #include "tests/drivers/packets.hpp"
 
 #include <benchmark/benchmark.h>
 
+#include <cctype>
 #include <cstring>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace lilo {
 namespace {
@@ -24,20 +28,51 @@ class Slots final : public ScanSink {
   std::size_t returns_ = 0;
 };
 
-constexpr int kTurns = 12;
+constexpr double kSensorTimeS = 1.2;  // twelve turns
 
-const std::vector<TimedPacket>& vlp16() {
-  static const auto packets = test::vlp16_packets(kTurns * 754 / 10, {});
-  return packets;
+struct Case {
+  std::string name;
+  const SensorTable* table;
+  test::DriveOptions drive;
+  std::vector<TimedPacket> packets;  // made when first asked for
+
+  const std::vector<TimedPacket>& made() {
+    if (packets.empty()) make();
+    return packets;
+  }
+  void make();
+};
+
+void Case::make() {
+  const double period_ns = table->packet_period_ns(drive.mode == test::Mode::dual);
+  const int count = static_cast<int>(kSensorTimeS * 1e9 / period_ns);
+  if (table->model == SensorModel::vlp16) {
+    packets = test::vlp16_packets(count, drive, table->product);
+  } else if (table->model == SensorModel::hdl64e) {
+    packets = test::hdl64e_packets(count,
+                                   {.drive = drive, .calibration = test::sample_calibration(true)});
+  } else {
+    packets = test::row_packets(count, {.model = table->model, .drive = drive});
+  }
 }
-const std::vector<TimedPacket>& vlp16_dual() {
-  static const auto packets = test::vlp16_packets(kTurns * 1508 / 10, {.mode = test::Mode::dual});
-  return packets;
+
+std::string lower(std::string name) {
+  for (char& c : name) c = c == ' ' ? '_' : static_cast<char>(std::tolower(c));
+  return name;
 }
-const std::vector<TimedPacket>& hdl64e() {
-  static const auto packets =
-      test::hdl64e_packets(kTurns * 3472 / 10, {.calibration = test::sample_calibration(true)});
-  return packets;
+
+// Every model known, in single and in dual return mode.
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  for (const SensorTable* table : sensor_tables()) {
+    const std::string name = lower(table->name);
+    cases.push_back({.name = name, .table = table, .drive = {}, .packets = {}});
+    cases.push_back({.name = name + "_dual",
+                     .table = table,
+                     .drive = {.mode = test::Mode::dual},
+                     .packets = {}});
+  }
+  return cases;
 }
 
 SensorConfig config_for_all() {
@@ -49,14 +84,16 @@ SensorConfig config_for_all() {
   return config;
 }
 
-void report(benchmark::State& state, std::size_t packets, double sensor_packets_per_s) {
-  const auto total = static_cast<double>(state.iterations()) * static_cast<double>(packets);
+void report(benchmark::State& state, const std::vector<TimedPacket>& packets) {
+  const auto sent_ns = static_cast<double>(packets.back().received_ns - packets[0].received_ns);
+  const double sensor_packets_per_s = static_cast<double>(packets.size() - 1) * 1e9 / sent_ns;
+  const auto total = static_cast<double>(state.iterations()) * static_cast<double>(packets.size());
   state.counters["x_sensor"] =
       benchmark::Counter(total / sensor_packets_per_s, benchmark::Counter::kIsRate);
   state.counters["packets"] = benchmark::Counter(total, benchmark::Counter::kIsRate);
 }
 
-void decode(benchmark::State& state, const std::vector<TimedPacket>& packets, double rate) {
+void decode(benchmark::State& state, const std::vector<TimedPacket>& packets) {
   const SensorConfig config = config_for_all();
   std::vector<PacketView> views;
   views.reserve(packets.size());
@@ -69,10 +106,10 @@ void decode(benchmark::State& state, const std::vector<TimedPacket>& packets, do
     for (const PacketView& view : views) builder.feed(view);
     benchmark::DoNotOptimize(slots.returns_);
   }
-  report(state, packets.size(), rate);
+  report(state, packets);
 }
 
-void copy(benchmark::State& state, const std::vector<TimedPacket>& packets, double rate) {
+void copy(benchmark::State& state, const std::vector<TimedPacket>& packets) {
   std::vector<std::byte> target(packets.size() * 1206);
   for (auto _ : state) {
     std::byte* at = target.data();
@@ -82,17 +119,27 @@ void copy(benchmark::State& state, const std::vector<TimedPacket>& packets, doub
     }
     benchmark::ClobberMemory();
   }
-  report(state, packets.size(), rate);
+  report(state, packets);
 }
 
-// Packets a second: VLP-16 manual 9.3; HDL-64E S2 manual, 6 shots of 48 us a packet.
-BENCHMARK_CAPTURE(decode, vlp16, vlp16(), 753.5)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(copy, vlp16, vlp16(), 753.5)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(decode, vlp16_dual, vlp16_dual(), 1507.0)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(decode, hdl64e, hdl64e(), 3472.2)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(copy, hdl64e, hdl64e(), 3472.2)->Unit(benchmark::kMillisecond);
+void register_case(Case& c) {
+  benchmark::RegisterBenchmark(("decode/" + c.name).c_str(), [&c](benchmark::State& state) {
+    decode(state, c.made());
+  })->Unit(benchmark::kMillisecond);
+  if (c.drive.mode == test::Mode::dual) return;  // a packet has the same size
+  benchmark::RegisterBenchmark(("copy/" + c.name).c_str(), [&c](benchmark::State& state) {
+    copy(state, c.made());
+  })->Unit(benchmark::kMillisecond);
+}
 
 }  // namespace
 }  // namespace lilo
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  auto cases = lilo::all_cases();
+  for (auto& c : cases) lilo::register_case(c);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
