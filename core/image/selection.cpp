@@ -82,22 +82,67 @@ bool Selection::take_evenly(const std::vector<Feature>& all) {
   return done;
 }
 
-void thin_out(const std::vector<Feature>& all, std::size_t most, std::vector<Feature>& fewer) {
+namespace {
+
+float range_of(const Feature& f) {
+  return std::sqrt(f.x_m * f.x_m + f.y_m * f.y_m + f.z_m * f.z_m);
+}
+
+/// The range from which on every feature is kept, if nearer ones are kept in proportion to their
+/// range and `most` altogether.
+float range_kept_whole_m(const std::vector<Feature>& all, std::size_t most) {
+  // Eight bins an octave: a float's exponent and the first bits of its fraction.
+  constexpr std::size_t kBins = 128;
+  constexpr std::uint32_t kBinBit = 20, kFirst = std::bit_cast<std::uint32_t>(0.125F) >> kBinBit;
+  const auto bin_of = [](float range_m) {
+    const std::uint32_t bin = std::bit_cast<std::uint32_t>(range_m) >> kBinBit;
+    return std::min<std::size_t>(bin < kFirst ? 0 : bin - kFirst, kBins - 1);
+  };
+  std::array<std::size_t, kBins> count{};
+  std::array<double, kBins> sum_m{};
+  for (const Feature& f : all) {
+    const float range_m = range_of(f);
+    const std::size_t bin = bin_of(range_m);
+    ++count[bin];
+    sum_m[bin] += static_cast<double>(range_m);
+  }
+  std::size_t farther = all.size();
+  double nearer_m = 0.0;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    farther -= count[bin];
+    nearer_m += sum_m[bin];
+    if (farther >= most) continue;
+    const auto whole_m = static_cast<float>(nearer_m / static_cast<double>(most - farther));
+    if (bin_of(whole_m) <= bin) return whole_m;
+  }
+  return static_cast<float>(nearer_m / static_cast<double>(most));
+}
+
+}  // namespace
+
+void thin_out(const std::vector<Feature>& all, std::size_t most, Evenly evenly,
+              std::vector<Feature>& fewer) {
+  if (all.size() <= most) {
+    fewer.assign(all.begin(), all.end());
+    return;
+  }
   constexpr std::uint32_t kGolden = 2654435769U;  // of 2^32: rings beside each other lie apart
-  const std::uint64_t whole = std::max(all.size(), most);
-  std::array<std::uint64_t, kMaxRings> owed{};  // to each ring, in parts of a feature
+  const bool in_image = evenly == Evenly::in_image;
+  const float part = static_cast<float>(most) / static_cast<float>(all.size());
+  const float part_per_m = in_image ? 0.0F : 1.0F / range_kept_whole_m(all, most);
+  std::array<float, kMaxRings> owed{};  // to each ring, in parts of a feature
   for (std::size_t ring = 0; ring < owed.size(); ++ring) {
-    owed[ring] = static_cast<std::uint32_t>(ring * kGolden) * whole >> 32U;
+    owed[ring] = 0x1p-32F * static_cast<float>(static_cast<std::uint32_t>(ring * kGolden));
   }
   fewer.resize(most);
   std::size_t n = 0;
   for (const Feature& f : all) {
     if (n == most) break;
     // A branch on it would be predicted wrongly half of the time.
-    std::uint64_t& parts = owed[f.ring];
-    parts += most;
-    const bool due = parts >= whole;
-    parts -= due ? whole : 0;
+    float& parts = owed[f.ring];
+    parts += in_image ? part : std::min(1.0F, range_of(f) * part_per_m);
+    const bool due = parts >= 1.0F;
+    parts -= due ? 1.0F : 0.0F;
     fewer[n] = f;
     n += static_cast<std::size_t>(due);
   }

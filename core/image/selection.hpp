@@ -45,8 +45,15 @@ class Selection {
   std::vector<Feature> chosen_;
 };
 
-/// `most` of them at most, evenly along each ring. In the image's order every second feature would
-/// be every second ring, wherever columns are filled alike.
-void thin_out(const std::vector<Feature>& all, std::size_t most, std::vector<Feature>& fewer);
+/// How features are spread that are left of more.
+enum class Evenly {
+  in_image,    ///< one of so many returns of a ring
+  along_rings  ///< one of so many metres: returns lie the farther apart the farther they are
+};
+
+/// `most` of them at most. In the image's order every second feature would be every second ring,
+/// wherever columns are filled alike: each ring is thinned out by itself.
+void thin_out(const std::vector<Feature>& all, std::size_t most, Evenly evenly,
+              std::vector<Feature>& fewer);
 
 }  // namespace lilo::core

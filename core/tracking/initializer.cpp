@@ -49,7 +49,7 @@ bool Initializer::add(const Observation& scan, const std::vector<Feature>& all, 
   one.finest_level = scan.finest_level;
   one.timing = scan.timing;
   one.feature_count = all.size();
-  thin_out(all, most_for_map_, one.for_map);
+  thin_out(all, most_for_map_, Evenly::in_image, one.for_map);
   one.selected.assign(scan.features->begin(), scan.features->end());
   search_.add(scan.timing, *scan.features);
   const Prior prior = local.predict(scan.timing);

@@ -3,21 +3,24 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace lilo::core {
 namespace {
 
-// Open ground fills every column with the same rings.
-std::vector<Feature> filled_columns(int columns, int rings) {
+// Open ground fills every column with the same rings; `s` tells the column.
+std::vector<Feature> filled_columns(int columns, int rings, float range_m = 10.0F) {
   std::vector<Feature> all;
   for (int column = 0; column < columns; ++column) {
     for (int ring = 0; ring < rings; ++ring) {
       Feature f{};
-      f.x_m = static_cast<float>(column);
+      f.x_m = range_m;
+      f.s = static_cast<float>(column);
       f.ring = static_cast<std::uint8_t>(ring);
       all.push_back(f);
     }
@@ -29,12 +32,17 @@ TEST(ThinOut, LeavesNoRingAndNoDirectionOut) {
   constexpr int kColumns = 1000, kRings = 8;
   const std::vector<Feature> all = filled_columns(kColumns, kRings);
   std::vector<Feature> fewer;
-  for (const int step : {2, 3, 4, 8}) {
-    thin_out(all, all.size() / static_cast<std::size_t>(step), fewer);
+  for (const auto& [step, evenly] : {std::pair{2, Evenly::in_image},
+                                     {3, Evenly::in_image},
+                                     {4, Evenly::in_image},
+                                     {8, Evenly::in_image},
+                                     {2, Evenly::along_rings},
+                                     {8, Evenly::along_rings}}) {
+    thin_out(all, all.size() / static_cast<std::size_t>(step), evenly, fewer);
     std::array<int, kRings> count{}, last{};
     last.fill(-1);
     for (const Feature& f : fewer) {
-      const int column = static_cast<int>(f.x_m);
+      const int column = static_cast<int>(f.s);
       EXPECT_LE(column - last[f.ring], step + 1) << "ring " << int{f.ring};
       last[f.ring] = column;
       ++count[f.ring];
@@ -47,15 +55,34 @@ TEST(ThinOut, LeavesNoRingAndNoDirectionOut) {
 TEST(ThinOut, NeverTakesMoreThanItMay) {
   std::vector<Feature> fewer;
   for (const std::size_t most : {1UL, 7UL, 999UL, 6000UL}) {
-    thin_out(filled_columns(1023, 7), most, fewer);
+    thin_out(filled_columns(1023, 7), most, Evenly::along_rings, fewer);
     EXPECT_LE(fewer.size(), most);
     EXPECT_GE(fewer.size() + 7, most);
   }
 }
 
+// Returns lie ten times as far apart at ten times the range, and are kept ten times as often.
+TEST(ThinOut, KeepsTheSameOfAMetreNearAndFar) {
+  constexpr std::size_t kOfEach = 8000;
+  std::vector<Feature> all = filled_columns(1000, 8, 5.0F);
+  const std::vector<Feature> far = filled_columns(1000, 8, 50.0F);
+  all.insert(all.end(), far.begin(), far.end());
+  for (const std::size_t most : {1100UL, 4400UL, 10000UL}) {
+    std::vector<Feature> fewer;
+    thin_out(all, most, Evenly::along_rings, fewer);
+    const auto near = static_cast<double>(
+        std::count_if(fewer.begin(), fewer.end(), [](const Feature& f) { return f.x_m < 10.0F; }));
+    const double far_kept = static_cast<double>(fewer.size()) - near;
+    const bool all_far = most > kOfEach;
+    const double far_expected = all_far ? kOfEach : static_cast<double>(most) * 10.0 / 11.0;
+    EXPECT_NEAR(far_kept, far_expected, 10.0) << most;
+    EXPECT_NEAR(near, static_cast<double>(most) - far_expected, 10.0) << most;
+  }
+}
+
 TEST(ThinOut, TakesAllOfFew) {
   std::vector<Feature> fewer;
-  thin_out(filled_columns(10, 4), 40, fewer);
+  thin_out(filled_columns(10, 4), 40, Evenly::along_rings, fewer);
   EXPECT_EQ(fewer.size(), 40U);
 }
 
