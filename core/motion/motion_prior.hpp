@@ -26,6 +26,7 @@ struct Prior {
   KnotInformation begin_information = KnotInformation::Identity();
   /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
   Vector6d acceleration_density = Vector6d::Ones();
+  bool has_heavy_tails = true;  ///< an innovation inflates the process noise
 };
 
 /// Roll and pitch share their process noise, and so do the two axes of the ground plane; yaw and

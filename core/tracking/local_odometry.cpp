@@ -1,6 +1,7 @@
 #include "core/tracking/local_odometry.hpp"
 
 #include "core/registration/comparison.hpp"
+#include "core/search/hypothesis.hpp"
 
 #include <Eigen/LU>
 
@@ -30,9 +31,21 @@ LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_featu
       uncertainty_(config.data_weight),
       least_segments_(config.segments) {}
 
+Solution LocalOdometry::align_moving(const std::vector<Feature>& features, const Prior& prior,
+                                     std::size_t finest_level) {
+  constexpr double kExceptional = 9.0;  // squared sigmas of the process noise
+  constexpr double kBeyondDoubt = 3.0;  // sigmas
+  Solution found = align(features, prior, finest_level);
+  if (normalised_innovation(prior, found.trajectory.knots).maxCoeff() < kExceptional) return found;
+  Prior usual_prior = prior;
+  usual_prior.has_heavy_tails = false;
+  Solution usual = align(features, usual_prior, finest_level);
+  return is_significant(found.inliers, usual.inliers, kBeyondDoubt) ? found : usual;
+}
+
 Solution LocalOdometry::align_moving_or_standing(const std::vector<Feature>& features,
                                                  const Prior& prior, std::size_t finest_level) {
-  Solution moving = align(features, prior, finest_level);
+  Solution moving = align_moving(features, prior, finest_level);
   if (!standing_.is_likely()) return moving;
   Solution standing = align(features, standing_.hypothesis(prior), finest_level);
   return fits_as_well(standing, moving) && tells_apart(standing, moving) ? standing : moving;

@@ -76,6 +76,10 @@ class LocalOdometry {
   }
 
  private:
+  /// An exceptional motion is taken only where it fits significantly better than a usual one: where
+  /// little of a scan matches, the heavy tails of the prior let it jump to a place like its own.
+  Solution align_moving(const std::vector<Feature>& features, const Prior& prior,
+                        std::size_t finest_level);
   void move_to(const MotionState& state);
 
   Solver solver_;
