@@ -11,7 +11,6 @@ namespace lilo::core {
 namespace {
 
 constexpr int kScansToGiveUp = 10;  // in vain, on end
-constexpr int kGrown = 15;          // keyframes of a map that must know where it is
 
 bool is_stationary(const Twist& twist) {
   constexpr double kStill_mps = 0.1, kStill_radps = 0.03;
@@ -120,12 +119,13 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
 
 /// Whether an alignment found too little of the scan in the map.
 bool Tracker::is_lost(const Solution& solution) const {
-  // Of the features. A map of one scan, a tenth of an HDL-64E's, knows little of an open place.
-  const double min_matched = local_.map().keyframes() < kGrown ? 0.05 : 0.2;
+  // Of the features. Foliage and grass match hardly at all: a park may come down to a fifth and be
+  // aligned well. That less matches than usual, the last line notices.
+  constexpr double kMinMatched = 0.05;
   constexpr double kMinWeight = 0.3;  // mean robust weight; a good alignment has 0.7 and more
   const double matched = solution.matched;
   return matched < static_cast<double>(kMinFeatures) ||
-         matched < min_matched * static_cast<double>(scan_.features->size()) ||
+         matched < kMinMatched * static_cast<double>(scan_.features->size()) ||
          solution.inliers < kMinWeight * matched ||
          last_.fit.relative(solution, scan_.structure) < kChanceFit;
 }
