@@ -154,10 +154,13 @@ void Tracker::accept(const Prior& prior) {
     last_.end_ns = scan_.timing.end_ns;
     if (phase_ != Phase::starting) last_.fit.learn(solution, scan_.structure);
   }
-  if (is_lost || scan_.timing.motion_compensated) {
-    local_.interrupt_noise();  // a scan whose returns all belong to its end has no middle
-  } else {
+  // A scan whose returns all belong to its end has no middle. One that has not converged is farther
+  // off than its information says, and the noise would grow by its errors.
+  const bool tells_noise = solution.converged && !is_lost && !scan_.timing.motion_compensated;
+  if (tells_noise) {
     local_.observe_noise(scan_.timing, solution);
+  } else {
+    local_.interrupt_noise();
   }
   if (is_first()) {
     local_.accept_first(scan_.timing);
