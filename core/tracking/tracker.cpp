@@ -29,6 +29,8 @@ Tracker::Tracker(const OdometryConfig& config)
 
 Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, StageHook hook) {
   scan_ = observe(scan, selection_.choose(features));
+  // What whole cells leave open, half ones may tell: the lamps of a tunnel.
+  if (alignment_.weak.count > 0) scan_.finest_level = LocalMaps::kNarrow;
   hook(Stage::filter);
   if (session_.is_over) begin_session();
   Prior prior = begin_scan(features);
