@@ -9,6 +9,7 @@ namespace lilo::core {
 void Drift::begin(const Matrix6d& at_start) {
   random_ = at_start_ = at_start;
   steady_.setZero();
+  travelled_m_.setZero();
   coasted_s_ = 0.0;
 }
 
@@ -17,6 +18,7 @@ void Drift::move(const Eigen::Vector3d& by_m) {
   F.bottomLeftCorner<3, 3>() = -skew(by_m);  // rotation x by
   random_ = F * random_ * F.transpose();
   steady_ = F * steady_;
+  travelled_m_ += by_m;
 }
 
 void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor,
@@ -45,6 +47,13 @@ void Drift::coast(const Eigen::Vector3d& axis, double acceleration_density, doub
 
 // One scan that tells a little more than nothing does not give the velocity back.
 void Drift::see(double span_s) { coasted_s_ = std::max(0.0, coasted_s_ - span_s); }
+
+Matrix6d Drift::covariance() const {
+  constexpr double kScale = 3e-4;  // paths come out too short by up to so much of their length
+  Matrix6d sum = random_ + steady_ * steady_.transpose();
+  sum.bottomRightCorner<3, 3>() += kScale * kScale * travelled_m_ * travelled_m_.transpose();
+  return sum;
+}
 
 Matrix6d in_sensor_axes(const Matrix6d& covariance, const Eigen::Quaterniond& R_odom_sensor) {
   const Eigen::Matrix3d back = R_odom_sensor.conjugate().toRotationMatrix();

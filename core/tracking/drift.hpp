@@ -11,7 +11,8 @@ namespace lilo::core {
 /// it on to what is aligned with it later. A part of that error is the same every time, since the
 /// same beams meet surfaces of the same kind under the same angles: it adds up along the way, as a
 /// scale does, and comes back on a loop. An error of attitude moves everything ahead of it aside.
-/// Where scans do not tell of a direction, the motion along it is dead reckoned.
+/// Where scans do not tell of a direction, the motion along it is dead reckoned. What is seen of
+/// things moves a little with the sensor: the path's scale is wrong by a part of it.
 /// All covariances: rotation then translation, as a small motion from the left about the sensor, in
 /// the odometry's axes (rad, m).
 class Drift {
@@ -35,12 +36,13 @@ class Drift {
   /// For `span_s` it told of all directions.
   void see(double span_s);
 
-  [[nodiscard]] Matrix6d covariance() const { return random_ + steady_ * steady_.transpose(); }
+  [[nodiscard]] Matrix6d covariance() const;
 
  private:
   Matrix6d random_ = Matrix6d::Zero();
   /// What a steady error of one sigma in each of the sensor's axes has come to.
   Matrix6d steady_ = Matrix6d::Zero();
+  Eigen::Vector3d travelled_m_ = Eigen::Vector3d::Zero();  // since the map was begun
   Matrix6d at_start_ = Matrix6d::Zero();
   double coasted_s_ = 0.0;  // dead reckoned on end
 };

@@ -94,8 +94,19 @@ TEST(Drift, AnErrorOfHeadingMovesAsideWhatLiesAhead) {
   drift.begin(heading);
   drift.move({100.0, 0.0, 0.0});
   EXPECT_NEAR(drift.covariance()(4, 4), 1.0, 1e-9);  // 1 m to the left or right
-  EXPECT_NEAR(drift.covariance()(3, 3), 0.0, 1e-9);
+  EXPECT_NEAR(drift.covariance()(3, 3), 0.03 * 0.03, 1e-9);  // the scale: 3e-4 of the way
   EXPECT_NEAR(drift.covariance()(2, 4), 0.01, 1e-9);  // to the left where it turns left
+}
+
+// Of what the scale is wrong by, nothing is left where the way ends at its beginning.
+TEST(Drift, AnErrorOfScaleGrowsWithTheDistanceFromTheStartAndComesBack) {
+  core::Drift drift;
+  drift.begin(Matrix6d::Zero());
+  drift.move({300.0, 0.0, 0.0});
+  drift.move({0.0, 400.0, 0.0});
+  EXPECT_NEAR(std::sqrt(drift.covariance().block<3, 3>(3, 3).trace()), 3e-4 * 500.0, 1e-9);
+  drift.move({-300.0, -400.0, 0.0});
+  EXPECT_NEAR(drift.covariance().norm(), 0.0, 1e-12);
 }
 
 // Of a keyframe's standard error a thirteenth is handed on, and half of that is steady.
