@@ -47,7 +47,8 @@ void turn_lasers(const Lasers& lasers, int count, std::span<const std::int32_t> 
 /// Where near-range corrections were found (manual, dual two point calibration).
 inline constexpr float kFarM = 25.04F, kNearXM = 2.40F, kNearYM = 1.93F;
 /// The intensity of a laser is weakest where it is out of focus: raw + slope * 256 * |(1 - f/R)^2 -
-/// (1 - d/R)^2|, R the largest distance a packet can hold (S2 manual, appendix "intensity").
+/// (1 - d/R)^2|, R the largest distance a packet can hold (S3 manual, appendix F, "Intensity
+/// Compensation vs Distance").
 inline constexpr float kFocalRangeM = 131.07F;
 
 }  // namespace lilo
