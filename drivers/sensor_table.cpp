@@ -56,8 +56,10 @@ constexpr std::array<double, 32> kVlp32cAzimuthDeg{
     1.4, -4.2, 1.4, -4.2, 4.2, -1.4, 1.4, -1.4, 1.4, -1.4, 1.4, -4.2, 4.2, -1.4, 1.4, -1.4};
 
 // --- HDL-32E. Manual 63-9113: elevations (table in "Laser Firing Sequence", page 10), all on the
-// axis; 1.152 us from laser to laser, 46.08 us a cycle (appendix E "Ethernet Transit Timing Table",
-// page 24).
+// axis. Appendix E "Ethernet Transit Timing Table", page 24: a laser fires -542.592 us + 46.08 us
+// times the block + 1.152 us times the laser after the stamp, which is written at the end of the
+// packet: 10.368 us before its twelve cycles are over. What that is in dual return mode, which the
+// manual does not know yet, is taken to be the same before the end of its six.
 constexpr std::array<FiringTimes, 1> kHdl32eTimes{in_groups(46'080, 32, 1, 1'152)};
 constexpr std::array<double, 32> kHdl32eDeg{
     -30.67, -9.33,  -29.33, -8.00,  -28.00, -6.67,  -26.67, -5.33,  -25.33, -4.00,  -24.00,
@@ -135,6 +137,8 @@ constexpr SensorTable kHdl32e{.model = SensorModel::hdl32e,
                               .product = 0x21,
                               .lasers = 32,
                               .times = kHdl32eTimes,
+                              .first_firing_ns = 10'368,
+                              .stamp_is_packet_end = true,
                               .elevation_deg = kHdl32eDeg};
 
 constexpr SensorTable kVls128{
