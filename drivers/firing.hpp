@@ -10,10 +10,13 @@
 
 namespace lilo {
 
+/// Of a processor's cache. An array that begins with one is read without crossing lines.
+inline constexpr std::size_t kLineBytes = 64;
+
 /// What some lasers of a block saw one after another. An array for each value, so that the compiler
 /// takes several lasers at a time.
 template <std::size_t kLasers>
-struct Firing {
+struct alignas(kLineBytes) Firing {
   std::array<std::int32_t, kLasers> steps;     ///< distance as sent
   std::array<std::int32_t, kLasers> in_range;  ///< 1 or 0
   std::array<float, kLasers> x_m, y_m, z_m, azimuth_rad;

@@ -21,7 +21,7 @@ namespace lilo {
 namespace {
 
 constexpr std::size_t kBank = wire::kChannelsPerBlock;
-constexpr std::size_t kSmall = 16;  // lasers of a sensor with two cycles a block
+constexpr std::size_t kSmall = 16;  // lasers of a sensor with two cycles a block and one bank
 
 LILO_INLINE float square(float v) { return v * v; }
 
@@ -99,14 +99,23 @@ Firing<32> correct32(const PacketContents& packet, int block, std::size_t laser,
 }
 
 template <auto kProject>
+constexpr std::size_t kLasersOf = decltype(kProject({}, 0, 0, 0))::size();
+
+// A constant where there is one bank, so that no loop over banks is left.
+template <auto kProject>
+LILO_INLINE int banks_of(const PacketContents& packet) {
+  return kLasersOf<kProject> == kSmall ? 1 : packet.table->banks;
+}
+
+template <auto kProject>
 void append_single(const PacketContents& packet, int block, std::size_t angle, std::int32_t t_ns,
                    Returns& out) {
   const ReturnKind kind =
       packet.layout.mode == ReturnMode::last ? ReturnKind::last : ReturnKind::strongest;
   const std::int32_t* laser_ns = packet.times->laser_ns.data();
-  Kept kept(out, static_cast<std::size_t>(packet.table->lasers));
-  for (int bank = 0; bank < packet.table->banks;
-       ++bank, ++block, angle += kBank, laser_ns += kBank) {
+  const int banks = banks_of<kProject>(packet);
+  Kept kept(out, static_cast<std::size_t>(banks) * kLasersOf<kProject>);
+  for (int bank = 0; bank < banks; ++bank, ++block, angle += kBank, laser_ns += kBank) {
     const std::size_t laser = static_cast<std::size_t>(bank) * kBank;
     const auto seen = kProject(packet, block, laser, angle);
     for (std::size_t k = 0; k < seen.size(); ++k)
@@ -134,8 +143,9 @@ template <auto kProject>
 void append_dual(const PacketContents& packet, int block, std::size_t angle, std::int32_t t_ns,
                  Returns& out) {
   const std::int32_t* laser_ns = packet.times->laser_ns.data();
-  Kept kept(out, static_cast<std::size_t>(packet.table->lasers) * 2);
-  for (int bank = 0; bank < packet.table->banks;
+  const int banks = banks_of<kProject>(packet);
+  Kept kept(out, static_cast<std::size_t>(banks) * kLasersOf<kProject> * 2);
+  for (int bank = 0; bank < banks;
        ++bank, block += packet.layout.bank_stride, angle += kBank, laser_ns += kBank) {
     const std::size_t laser = static_cast<std::size_t>(bank) * kBank;
     const auto last = kProject(packet, block, laser, angle);

@@ -9,7 +9,8 @@
 
 namespace lilo {
 
-/// The 512-byte packet on port 8308 (VLP-16 manual 9.4: stamp at 0xC6, PPS at 0xCA, NMEA at 0xCE).
+/// The 512-byte packet on port 8308 (VLP-16 manual 9.3.3: stamp at 0xC6, PPS at 0xCA, NMEA at
+/// 0xCE).
 struct PositionPacket {
   std::uint32_t stamp_us = 0;  ///< past the hour, by the sensor's clock
   bool pps_locked = false;

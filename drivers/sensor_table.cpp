@@ -30,9 +30,11 @@ constexpr FiringTimes hdl64e(std::int32_t cycle_ns, std::int32_t group_ns,
   return times;
 }
 
-// --- VLP-16, Puck LITE, Puck Hi-Res. Manual 63-9243 rev. D: firing times 9.3.1.3 and 9.4, two
-// cycles of 16 firings 2.304 us apart and 18.432 us of recharge; elevations and vertical correction
-// table 9-1 (11.2 mm at 15 degrees: 41.91 mm tan w); bytes 37 to 39 and 22, 24 page 56 and 57.
+// --- VLP-16, Puck LITE, Puck Hi-Res. VLP-16 manual 63-9243 rev. D: sixteen firings 2.304 us apart
+// and 18.43 us of recharge, the stamp that of the first (9.4 "Discreet Point Timing Calculation",
+// page 62); bytes 37 to 39 and 22, 24 (9.3.1.7 "Factory Bytes", page 56); elevations and vertical
+// corrections (table in chapter 9; 11.2 mm at 15 degrees: 41.91 mm tan w). Those of the Hi-Res are
+// its own manual's.
 constexpr std::array<FiringTimes, 1> kVlp16Times{in_groups(55'296, 16, 1, 2'304)};
 constexpr std::array<double, 16> kVlp16Deg{-15, 1, -13, 3,  -11, 5,  -9, 7,
                                            -7,  9, -5,  11, -3,  13, -1, 15};
@@ -40,10 +42,10 @@ constexpr std::array<double, 16> kHiResDeg{-10.00, 0.67, -8.67, 2.00, -7.33, 3.3
                                            -4.67,  6.00, -3.33, 7.33, -2.00, 8.67, -0.67, 10.00};
 constexpr double kVlp16Origin_m = 0.04191;
 
-// --- VLP-32C. Manual 63-9325, chapter 9: two lasers at a time, 2.304 us apart, 55.296 us a cycle,
-// distances in 4 mm. The angles are those that tier4/nebula and velodyne_decoder ship as well, and
-// the real capture's points agree. The origin's 42.4 mm are in none of them: without it the floor
-// of the real capture lies 24 mm lower below the sensor than 2 m away, with it 11 mm.
+// --- VLP-32C. Manual 63-9325 rev. C: two lasers at a time, 2.304 us apart, 55.296 us a cycle (9.4,
+// page 62); elevations and azimuth offsets by laser (table 9-6, pages 66 and 67); distances in 4
+// mm. The real capture's points agree. The origin's 42.4 mm are in none of them: without it the
+// floor of the real capture lies 24 mm lower below the sensor than 2 m away, with it 11 mm.
 constexpr std::array<FiringTimes, 1> kVlp32cTimes{in_groups(55'296, 32, 2, 2'304)};
 constexpr std::array<double, 32> kVlp32cDeg{
     -25,    -1,     -1.667, -15.639, -11.31, 0,      -0.667, -8.843, -7.254, 0.333,  -0.333,
@@ -53,20 +55,25 @@ constexpr std::array<double, 32> kVlp32cAzimuthDeg{
     1.4, -4.2, 1.4, -1.4, 1.4, -1.4, 4.2, -1.4, 1.4, -4.2, 1.4, -1.4, 4.2, -1.4, 4.2, -1.4,
     1.4, -4.2, 1.4, -4.2, 4.2, -1.4, 1.4, -1.4, 1.4, -1.4, 1.4, -4.2, 4.2, -1.4, 1.4, -1.4};
 
-// --- HDL-32E. Manual 63-9113: one laser at a time, 1.152 us apart, 46.08 us a cycle (appendix
-// "firing sequence"); elevations table "vertical angles by laser id", all on the axis.
+// --- HDL-32E. Manual 63-9113: elevations (table in "Laser Firing Sequence", page 10), all on the
+// axis. Appendix E "Ethernet Transit Timing Table", page 24: a laser fires -542.592 us + 46.08 us
+// times the block + 1.152 us times the laser after the stamp, which is written at the end of the
+// packet: 10.368 us before its twelve cycles are over. What that is in dual return mode, which the
+// manual does not know yet, is taken to be the same before the end of its six.
 constexpr std::array<FiringTimes, 1> kHdl32eTimes{in_groups(46'080, 32, 1, 1'152)};
 constexpr std::array<double, 32> kHdl32eDeg{
     -30.67, -9.33,  -29.33, -8.00,  -28.00, -6.67,  -26.67, -5.33,  -25.33, -4.00,  -24.00,
     -2.67,  -22.67, -1.33,  -21.33, 0.00,   -20.00, 1.33,   -18.67, 2.67,   -17.33, 4.00,
     -16.00, 5.33,   -14.67, 6.67,   -13.33, 8.00,   -12.00, 9.33,   -10.67, 10.67};
 
-// --- VLS-128 (Alpha Prime). Manual, pages 57 (dual return: eight blocks, four without data), 61
-// and 64 (firing times), as tier4/nebula cites them: eight lasers at a time, 2.665 us apart, one
-// pause after eight of the sixteen groups (VeloView: two), 53.3 us a cycle; the fourth group fires
-// with the stamp (8.7 us in ros-drivers). The real capture's cycle is 55.28 us, wavering by 0.7 us
-// from packet to packet, and later firmware is said to take 57.8 us: it is measured. Distances are
-// in 4 mm, whatever calibration files say (7 mm in nebula's): the real capture's reference cloud.
+// --- VLS-128 (Alpha Prime). Manual 63-9483 rev. A: eight lasers at a time, 2.665 us apart, a pause
+// of 2.665 us after eight of the sixteen groups and one of 7.995 us at the end, 53.3 us a cycle "on
+// average"; the stamp is the fourth group's, so 8.7 us are to be taken off (all page 61); distances
+// in 4 mm (9.3.1.3, page 54). Page 57, as tier4/nebula cites it: dual return has eight blocks and
+// four without data. The real capture's cycle is 55.28 us, wavering by 0.7 us from packet to
+// packet, and later firmware is said to take 57.8 us: it is measured. Calibration files may say 7
+// mm a step (nebula's does); the real capture's reference cloud has 4. Angles are those of nebula's
+// file. The product byte is the real capture's; the table in the VLP-16's manual says 0x63.
 constexpr std::array<FiringTimes, 1> kVls128Times{in_groups(53'300, 128, 8, 2'665, 8)};
 constexpr std::array<double, 128> kVls128Deg{
     -11.742, -1.99,   3.4,    -5.29,  -0.78, 4.61,    -4.08,   1.31,     //
@@ -88,10 +95,11 @@ constexpr std::array<double, 128> kVls128Deg{
 constexpr std::array<double, 8> kVls128AzimuthDeg{6.354,  4.548,  2.732,  0.911,
                                                   -0.911, -2.732, -4.548, -6.354};
 
-// --- HDL-64E S2 and S3. "Laser firing time table" of the S2 manual (48 us a shot) and of the S3
-// manual 63-HDL64ES3 rev. K (57.6 us); which one holds tells the packets' period. VeloView counts
-// the stamp as the end of the packet, others as its beginning; no manual page says. It shifts all
-// times alike by one packet. Each unit has its own angles.
+// --- HDL-64E S2 and S3. "Ethernet Transmit Timing Table", appendix G of the manual of the S2 (48
+// us a shot) and of the S3, 63-HDL64ES3 rev. K (57.6 us), as velodyne_decoder cites them; which one
+// holds tells the packets' period. VeloView counts the stamp as the end of the packet, others as
+// its beginning; no manual page says. It shifts all times alike by one packet. Each unit has its
+// own angles.
 constexpr std::array<FiringTimes, 2> kHdl64eTimes{hdl64e(48'000, 6'000, {0, 1'260, 2'460, 3'660}),
                                                   hdl64e(57'600, 7'200, {0, 1'300, 2'500, 3'700})};
 
@@ -102,8 +110,7 @@ constexpr SensorTable kVlp16{.model = SensorModel::vlp16,
                              .cycles_per_block = 2,
                              .times = kVlp16Times,
                              .elevation_deg = kVlp16Deg,
-                             .origin_radius_m = kVlp16Origin_m,
-                             .manual = "63-9243"};
+                             .origin_radius_m = kVlp16Origin_m};
 
 constexpr SensorTable kHiRes{.model = SensorModel::vlp16,
                              .name = "Puck Hi-Res",
@@ -112,8 +119,7 @@ constexpr SensorTable kHiRes{.model = SensorModel::vlp16,
                              .cycles_per_block = 2,
                              .times = kVlp16Times,
                              .elevation_deg = kHiResDeg,
-                             .origin_radius_m = kVlp16Origin_m,
-                             .manual = "63-9318"};
+                             .origin_radius_m = kVlp16Origin_m};
 
 constexpr SensorTable kVlp32c{.model = SensorModel::vlp32c,
                               .name = "VLP-32C",
@@ -124,16 +130,16 @@ constexpr SensorTable kVlp32c{.model = SensorModel::vlp32c,
                               .times = kVlp32cTimes,
                               .elevation_deg = kVlp32cDeg,
                               .azimuth_deg = kVlp32cAzimuthDeg,
-                              .origin_radius_m = 0.0424,
-                              .manual = "63-9325"};
+                              .origin_radius_m = 0.0424};
 
 constexpr SensorTable kHdl32e{.model = SensorModel::hdl32e,
                               .name = "HDL-32E",
                               .product = 0x21,
                               .lasers = 32,
                               .times = kHdl32eTimes,
-                              .elevation_deg = kHdl32eDeg,
-                              .manual = "63-9113"};
+                              .first_firing_ns = 10'368,
+                              .stamp_is_packet_end = true,
+                              .elevation_deg = kHdl32eDeg};
 
 constexpr SensorTable kVls128{
     .model = SensorModel::vls128,
@@ -150,8 +156,7 @@ constexpr SensorTable kVls128{
     .first_firing_ns = -8'700,
     .elevation_deg = kVls128Deg,
     .azimuth_deg = kVls128AzimuthDeg,
-    .origin_radius_m = 0.05863,
-    .manual = "63-9679"};
+    .origin_radius_m = 0.05863};
 
 constexpr SensorTable kHdl64e{.model = SensorModel::hdl64e,
                               .name = "HDL-64E",
@@ -164,8 +169,7 @@ constexpr SensorTable kHdl64e{.model = SensorModel::hdl64e,
                               .range_noise_m = 0.018,
                               .times = kHdl64eTimes,
                               .turns_within_block = false,
-                              .stamp_is_packet_end = true,
-                              .manual = "63-HDL64ES3"};
+                              .stamp_is_packet_end = true};
 
 constexpr std::array kAll{&kVlp16, &kHiRes, &kVlp32c, &kHdl32e, &kVls128, &kHdl64e};
 

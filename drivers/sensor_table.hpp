@@ -24,7 +24,7 @@ struct FiringTimes {
 /// Where the second echo of a block stands in dual return mode.
 enum class EchoOrder : std::uint8_t {
   /// In the block after it: first the last echo, then the strongest, or the second strongest where
-  /// the last is the strongest (VLP-16 manual, 9.3.1.5).
+  /// the last is the strongest (VLP-16 manual, 9.3.2 "Data Packet Structure").
   last_then_strongest,
   /// Behind all blocks of the cycle, first the strongest, then the last (HDL-64E; no manual page
   /// says which is which, the order is that of velodyne_decoder).
@@ -55,14 +55,14 @@ struct SensorTable {
   bool cycle_varies = false;
   /// The head's azimuth is that of each firing; else all lasers of a block have the block's.
   bool turns_within_block = true;
-  /// The first firing of the packet after its stamp; the stamp may also be the packet's end.
+  /// The first firing of the packet after its stamp. Where the stamp is the packet's end, a
+  /// packet's period is taken off.
   std::int32_t first_firing_ns = 0;
   bool stamp_is_packet_end = false;
 
   std::span<const double> elevation_deg;  ///< by laser; empty: each unit has a calibration
   std::span<const double> azimuth_deg;    ///< by laser, added to the head's; repeats; empty: zero
   double origin_radius_m = 0.0;           ///< beams meet the axis this far behind their origins
-  const char* manual = "";
 
   [[nodiscard]] int cycles_per_packet(bool dual) const {
     return wire::kBlocks / (dual ? 2 * banks : banks) * cycles_per_block;

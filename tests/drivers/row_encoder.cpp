@@ -19,7 +19,11 @@ struct Row {
 
 Row row_of(const RowOptions& o) {
   if (o.model == SensorModel::vlp32c) return {1, 2, 55.296, 2.304, 0.0, 0.004, 0.0424, 0x28};
-  if (o.model == SensorModel::hdl32e) return {1, 1, 46.08, 1.152, 0.0, 0.002, 0.0, 0x21};
+  // Manual, appendix E: the stamp is 542.592 us after the first of twelve firings, 10.368 us before
+  // the end.
+  const double hdl32e_stamp_us = (o.drive.mode == Mode::dual ? 6 : 12) * 46.08 - 10.368;
+  if (o.model == SensorModel::hdl32e)
+    return {1, 1, 46.08, 1.152, hdl32e_stamp_us, 0.002, 0.0, 0x21};
   return {4, 8, o.vls128_cycle_us, 2.665, 8.7, 0.004, 0.05863, 0xA1};
 }
 

@@ -1,5 +1,6 @@
 // VLP-32C, HDL-32E and VLS-128: packets of a known room must decode to points on its surfaces, at
 // the manuals' times, and losses must be counted to the packet.
+#include "drivers/packet_decoder.hpp"
 #include "tests/drivers/packets.hpp"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include <ostream>
 #include <random>
 #include <set>
+#include <span>
 #include <string>
 
 namespace lilo {
@@ -150,6 +152,22 @@ TEST(RowSensorTimes, FollowTheManuals) {
   EXPECT_EQ(offsets(SensorModel::vlp32c), vlp32c);
   EXPECT_EQ(offsets(SensorModel::hdl32e), hdl32e);
   EXPECT_EQ(offsets(SensorModel::vls128), vls128);
+}
+
+// Manual, appendix E: -542.592 us + 46.08 us times the block after the stamp.
+TEST(RowSensorTimes, AnHdl32eIsStampedAtThePacketsEnd) {
+  const auto packets = test::row_packets(1, {.model = SensorModel::hdl32e});
+  const AzimuthTable azimuths;
+  PacketDecoder decoder({}, azimuths);
+  decoder.use(*find_sensor(SensorModel::hdl32e));
+  const std::span<const std::byte> bytes = packets[0].bytes;
+  ASSERT_TRUE(decoder.load(bytes.first<wire::kDataPacketBytes>()));
+  ASSERT_EQ(decoder.columns().size(), 12U);
+  for (std::int32_t block = 0; block < 12; ++block) {
+    const Column& column = decoder.columns()[static_cast<std::size_t>(block)];
+    EXPECT_EQ(column.first_ns, -542'592 + 46'080 * block);
+    EXPECT_EQ(column.last_ns, column.first_ns + 31 * 1'152);
+  }
 }
 
 TEST(RowSensor, MalformedPacketsAreCountedAndLeftOut) {

@@ -64,7 +64,7 @@ void listen(UdpSource& source, const UdpConfig& config, double seconds, Wire& wi
 
 }  // namespace
 
-// VLP-16 manual 9.3.1.6: return mode, then product. An HDL-64E has its status bytes there instead,
+// VLP-16 manual 9.3.1.7: return mode, then product. An HDL-64E has its status bytes there instead,
 // and blocks of its lower lasers.
 std::string model_of(const std::byte* payload, std::size_t bytes) {
   constexpr std::array<std::pair<std::uint8_t, const char*>, 5> kProducts{{{0x21, "HDL-32E"},

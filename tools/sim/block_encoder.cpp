@@ -42,8 +42,9 @@ constexpr std::array<double, 8> kVls128Azimuth_deg{6.354,  4.548,  2.732,  0.911
 constexpr BlockSensor kVlp32c{
     Sensor::vlp32c,    0x28, 1, 0.004, 55'296, 2'304, 2, kNoPause, 0, 0.0424, kVlp32c_deg,
     kVlp32cAzimuth_deg};
-constexpr BlockSensor kHdl32e{Sensor::hdl32e, 0x21, 1,   0.002,       46'080,       1'152, 1,
-                              kNoPause,       0,    0.0, kHdl32e_deg, kNoOffset_deg};
+// Manual, appendix E: the stamp is 542.592 us after the first firing of a single return packet.
+constexpr BlockSensor kHdl32e{Sensor::hdl32e, 0x21,    1,   0.002,       46'080,       1'152, 1,
+                              kNoPause,       -10'368, 0.0, kHdl32e_deg, kNoOffset_deg};
 // The sequence as a real unit was found to take it; the manual says 53.3 us.
 constexpr BlockSensor kVls128{Sensor::vls128, 0xA1,    4,           0.004,
                               55'278,         2'665,   8,           8,
@@ -121,7 +122,8 @@ Packet BlockEncoder::encode(std::int64_t start_ns) {
   for (std::size_t k = 0; k < sequences(); ++k)
     fill_sequence(packet, k * blocks_a_sequence(),
                   start_ns + static_cast<std::int64_t>(k) * sensor_.sequence_ns);
-  put_u32(packet.payload, 1200, rig_.clock.stamp_us(start_ns + sensor_.stamp_delay_ns));
+  const std::int64_t counted_from_ns = start_ns + (sensor_.stamp_delay_ns < 0 ? period_ns() : 0);
+  put_u32(packet.payload, 1200, rig_.clock.stamp_us(counted_from_ns + sensor_.stamp_delay_ns));
   packet.payload[1204] = mode_byte(rig_.options.returns);
   packet.payload[1205] = sensor_.product;
   return packet;

@@ -19,7 +19,7 @@ struct BlockSensor {
   double distance_step_m;
   std::int64_t sequence_ns, group_ns;
   std::size_t lasers_a_group, groups_before_pause;
-  std::int64_t stamp_delay_ns;  ///< of the stamp after the first firing
+  std::int64_t stamp_delay_ns;  ///< of the stamp after the first firing; negative: after the end
   double pivot_m;               ///< beams meet the axis this far behind the lenses
   std::span<const double> elevation_deg;
   std::span<const double> azimuth_deg;  ///< clockwise of the head; repeats
