@@ -1,7 +1,7 @@
 #include "daemon/answer_writer.hpp"
 
 #include "daemon/clock.hpp"
-#include "daemon/pose_message.hpp"
+#include "daemon/message_head.hpp"
 
 #include <utility>
 
@@ -19,10 +19,7 @@ AnswerWriter::AnswerWriter(const PublishConfig& publish,
       session_(std::move(session)) {}
 
 void AnswerWriter::begin(std::string_view kind) {
-  out_ = JsonWriter();
-  out_.text("v", kProtocolVersion);
-  out_.seconds("timestamp", realtime_ns());
-  out_.text("session", session_());
+  begin_message(out_, realtime_ns(), session_());
   out_.begin_object(kind);
 }
 

@@ -1,10 +1,6 @@
 #include "daemon/server.hpp"
 
 #include "daemon/clock.hpp"
-<<<<<<< HEAD
-#include "daemon/message_head.hpp"
-=======
->>>>>>> h1
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/address.hpp>
@@ -163,48 +159,6 @@ void Server::answer_query(const std::string& query) {
   }
 }
 
-<<<<<<< HEAD
-void Server::begin(JsonWriter& out) { begin_message(out, realtime_ns(), actions_.session()); }
-
-void Server::say_hello(double ttl_s, bool points) {
-  begin(json_);
-  json_.begin_object("hello");
-  json_.text("software", kSoftware);
-  json_.number("ttl_s", ttl_s, 3);
-  json_.text("frame_id", publish_.frame_id);
-  json_.text("child_frame_id", publish_.child_frame_id);
-  if (points) {
-    json_.begin_object("points");
-    json_.integer("scan", config_.scan_points);
-    json_.integer("map", config_.map_points);
-    json_.end_object();
-  }
-  json_.end_object();
-  answer(json_.finish());
-}
-
-void Server::say_error(std::string_view why, const Endpoint& to) { answer(write_error(why), to); }
-
-std::string_view Server::write_token() {
-  begin(json_);
-  json_.begin_object("hello");
-  json_.text("software", kSoftware);
-  json_.number("ttl_s", 0.0, 3);
-  json_.text("token", tokens_.make(who(from_), monotonic_ns()));
-  json_.end_object();
-  return json_.finish();
-}
-
-std::string_view Server::write_error(std::string_view why) {
-  begin(json_);
-  json_.begin_object("error");
-  json_.text("reason", why);
-  json_.end_object();
-  return json_.finish();
-}
-
-=======
->>>>>>> h1
 void Server::answer(std::string_view datagram, const Endpoint& to) {
   --answers_left_;
   send_to(datagram, to);
