@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <stdexcept>
+#include <string>
 
 namespace lilo::worlds {
 namespace {
@@ -49,8 +52,9 @@ TEST(WorldList, MistakesNameTheirLine) {
   EXPECT_EQ(error_of("seeds: {}\n"), "list.yaml:1: expected a sequence 'worlds', found none");
   EXPECT_EQ(error_of("worlds:\n  - {name: a, source: simm, config: vlp16, arguments: x}\n"),
             "list.yaml:2: source: expected one of sim, velosim, recording, found 'simm'");
-  EXPECT_EQ(error_of("worlds:\n  - {name: a, source: sim, config: vlp32, arguments: x}\n"),
-            "list.yaml:2: config: expected one of vlp16, hdl64e, found 'vlp32'");
+  EXPECT_EQ(
+      error_of("worlds:\n  - {name: a, source: sim, config: vlp32, arguments: x}\n"),
+      "list.yaml:2: config: expected one of vlp16, vlp32c, hdl32e, hdl64e, vls128, found 'vlp32'");
   EXPECT_EQ(error_of("worlds:\n  - {name: a, source: sim, config: vlp16, path: x}\n"),
             "list.yaml:2: expected one of name, source, config, arguments, found 'path'");
   EXPECT_EQ(error_of("worlds:\n  - {name: a, source: sim, config: vlp16}\n"),
@@ -71,6 +75,20 @@ TEST(WorldList, TheBuiltInOneIsGood) {
         << "what is chosen on is no test";
   }
   EXPECT_GE(list.choose.size(), 2U);
+}
+
+TEST(WorldList, OfModelsDrivesEachThroughTheSameWorlds) {
+  const WorldList list =
+      read_world_list(std::string(LILO_TOOLS_TESTS_DIR) + "/../../tools/bench/worlds/models.yaml");
+  std::map<std::string, std::set<std::string>> sensors_by_world;
+  for (const World& world : list.worlds) {
+    ASSERT_EQ(world.arguments.size(), 6U) << world.name;
+    EXPECT_EQ(world.arguments[0], "--world");
+    sensors_by_world[world.arguments[1]].insert(world.arguments[5]);
+  }
+  EXPECT_EQ(sensors_by_world.size(), 3U);
+  const std::set<std::string> models{"vlp16", "vlp16-hires", "vlp32c", "hdl32e", "vls128"};
+  for (const auto& [name, sensors] : sensors_by_world) EXPECT_EQ(sensors, models) << name;
 }
 
 TEST(Drives, AreAllSeedsOfTheWorldsAskedFor) {

@@ -83,8 +83,8 @@ TEST(WorldsReport, HasALineAWorldAndRole) {
                without("park", 22, true), without("town", 11, false)});
   // Of 0.5 and 0.75: sqrt(2) / 8.
   EXPECT_EQ(line_of(text, "park choose"),
-            "park choose 11 12 - - 0.625+-0.177 - - 99.0 - - - - - 1.25 - -");
-  EXPECT_EQ(line_of(text, "park report"), "park report 21 - - 3.000 - - 99.0 - - - - - 1.25 - -");
+            "park choose 11 12 - - 0.625+-0.177 - - 99.0 - - - - - 1.25 - - -");
+  EXPECT_EQ(line_of(text, "park report"), "park report 21 - - 3.000 - - 99.0 - - - - - 1.25 - - -");
   EXPECT_EQ(line_of(text, "skipped"), "skipped park 22: it is not here");
   EXPECT_EQ(line_of(text, "failed"), "failed town 11: it is not here");
   EXPECT_EQ(line_of(text, "town"), "") << "a line of figures without any";
@@ -98,10 +98,11 @@ TEST(WorldsReport, SaysWhatIsBeyondTheSpread) {
                outcome("town", 21, {1.0, 0.5})});
   const std::string differences = text.substr(text.find("second minus first"));
   EXPECT_EQ(line_of(differences, "park choose"),
-            "park choose 11 12 - - +0.250+-0.000* - - = - - - - - = - -");
+            "park choose 11 12 - - +0.250+-0.000* - - = - - - - - = - - -");
   EXPECT_EQ(line_of(differences, "town choose"),
-            "town choose 11 12 - - -0.250+-0.750 - - = - - - - - = - -");
-  EXPECT_EQ(line_of(differences, "town report"), "town report 21 - - -0.500 - - = - - - - - = - -");
+            "town choose 11 12 - - -0.250+-0.750 - - = - - - - - = - - -");
+  EXPECT_EQ(line_of(differences, "town report"),
+            "town report 21 - - -0.500 - - = - - - - - = - - -");
   EXPECT_NE(text.find("\n  ATE m: higher in park (choose)\n"), std::string::npos) << text;
 }
 

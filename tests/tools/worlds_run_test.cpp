@@ -34,7 +34,7 @@ done
 constexpr const char* kTruth =
     "1 0 0 0 0 0 0 1\n2 10 0 0 0 0 0 1\n3 20 0 0 0 0 0 1\n4 30 0 0 0 0 0 1\n";
 constexpr const char* kStats =
-    R"({"total_ms":{"p50":1.5,"p99":2.5},"tenths":{"map_size":[0,1,2,3,4,5,6,7,8,900]}})";
+    R"({"total_ms":{"p50":1.5,"p99":2.5},"peak_rss_mb":40.5,"tenths":{"map_size":[0,1,2,3,4,5,6,7,8,900]}})";
 
 /// 0.1 m too far at every pose.
 std::string poses() {
@@ -103,6 +103,7 @@ TEST(Worlds, EveryDriveIsRecordedAndRun) {
     EXPECT_NEAR(figures.ate_m, std::sqrt(0.0125), 1e-6);
     EXPECT_EQ(figures.cpu_p99_ms, 2.5);
     EXPECT_EQ(figures.map_size, 900.0);
+    EXPECT_EQ(figures.peak_rss_mb, 40.5);
   }
 }
 

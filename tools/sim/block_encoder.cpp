@@ -58,8 +58,8 @@ std::uint8_t mode_byte(ReturnMode mode) {
 }  // namespace
 
 const BlockSensor* find_block_sensor(Sensor sensor) {
-  const auto found = std::find_if(kSensors.begin(), kSensors.end(),
-                                  [&](const BlockSensor* s) { return s->sensor == sensor; });
+  const auto* const found = std::find_if(kSensors.begin(), kSensors.end(),
+                                         [&](const BlockSensor* s) { return s->sensor == sensor; });
   return found == kSensors.end() ? nullptr : *found;
 }
 

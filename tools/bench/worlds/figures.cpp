@@ -18,6 +18,7 @@ void add_times(const std::string& path, Figures& figures) {
   try {
     figures.cpu_p50_ms = json.at("total_ms").at("p50");
     figures.cpu_p99_ms = json.at("total_ms").at("p99");
+    figures.peak_rss_mb = json.value("peak_rss_mb", kUnknown);
     if (json.contains("tenths")) figures.map_size = json["tenths"].at("map_size").at(9);
   } catch (const nlohmann::json::exception& error) {
     throw std::runtime_error(
@@ -43,8 +44,8 @@ void add_trust(const Trust& trust, Figures& figures) {
 
 }  // namespace
 
-const std::array<Column, 14>& columns() {
-  static constexpr std::array<Column, 14> kColumns = {{
+const std::array<Column, 15>& columns() {
+  static constexpr std::array<Column, 15> kColumns = {{
       {"t_percent", "t %", &Figures::t_percent, 3, true},
       {"r_deg_per_100m", "deg/100 m", &Figures::r_deg_per_100m, 3, true},
       {"ate_m", "ATE m", &Figures::ate_m, 3, true},
@@ -59,6 +60,7 @@ const std::array<Column, 14>& columns() {
       {"cpu_p50_ms", "p50 ms", &Figures::cpu_p50_ms, 2, false},
       {"cpu_p99_ms", "p99 ms", &Figures::cpu_p99_ms, 2, false},
       {"map_size", "cells", &Figures::map_size, 0, false},
+      {"peak_rss_mb", "RSS MB", &Figures::peak_rss_mb, 1, false},
   }};
   return kColumns;
 }

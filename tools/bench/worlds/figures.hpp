@@ -20,6 +20,7 @@ struct Figures {
   double sessions = kUnknown;
   double cpu_p50_ms = kUnknown, cpu_p99_ms = kUnknown;  ///< a scan, decoding included
   double map_size = kUnknown;  ///< cells, mean over the last tenth of the recording
+  double peak_rss_mb = kUnknown;
 };
 
 /// For tables, in their order.
@@ -30,7 +31,7 @@ struct Column {
   int decimals;
   bool spread;  ///< in text: with that over the seeds
 };
-const std::array<Column, 14>& columns();
+const std::array<Column, 15>& columns();
 
 /// Of a finished cell's folder: poses.jsonl, stats.json and truth.tum. `lengths_m` empty: as in
 /// lilo eval. Throws std::runtime_error.

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array kSources{Source::sim, Source::velosim, Source::recording};
 constexpr std::array kRoles{Role::choose, Role::report};
-constexpr std::array kSensors{"vlp16", "hdl64e"};
+constexpr std::array kSensors{"vlp16", "vlp32c", "hdl32e", "hdl64e", "vls128"};
 
 /// Reads one list; knows its name for messages.
 class Parser {
