@@ -93,9 +93,9 @@ TEST(Drift, AnErrorOfHeadingMovesAsideWhatLiesAhead) {
   heading(2, 2) = 1e-4;  // 0.01 rad about z
   drift.begin(heading);
   drift.move({100.0, 0.0, 0.0});
-  EXPECT_NEAR(drift.covariance()(4, 4), 1.0, 1e-9);  // 1 m to the left or right
+  EXPECT_NEAR(drift.covariance()(4, 4), 1.0, 1e-9);          // 1 m to the left or right
   EXPECT_NEAR(drift.covariance()(3, 3), 0.03 * 0.03, 1e-9);  // the scale: 3e-4 of the way
-  EXPECT_NEAR(drift.covariance()(2, 4), 0.01, 1e-9);  // to the left where it turns left
+  EXPECT_NEAR(drift.covariance()(2, 4), 0.01, 1e-9);         // to the left where it turns left
 }
 
 // Of what the scale is wrong by, nothing is left where the way ends at its beginning.

@@ -92,7 +92,7 @@ TEST(PoseUncertainty, AnotherMapBeginsAsUncertainAsThePoseWas) {
   EXPECT_NEAR(at_start(4, 4), 0.0, 1e-12);
   uncertainty.move({100.0, 0.0, 0.0});
   const Matrix6d ahead = uncertainty.covariance(exact_state());
-  EXPECT_NEAR(ahead(4, 4), 1.0, 1e-9);  // 0.01 rad of 100 m
+  EXPECT_NEAR(ahead(4, 4), 1.0, 1e-9);          // 0.01 rad of 100 m
   EXPECT_NEAR(ahead(3, 3), 0.03 * 0.03, 1e-9);  // the scale: 3e-4 of the way
   uncertainty.rewind();
   EXPECT_TRUE(uncertainty.covariance(exact_state()).isApprox(at_start));
