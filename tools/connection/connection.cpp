@@ -40,7 +40,13 @@ Connection::Connection(const LilodAddress& address, Milliseconds patience)
 }
 
 Connection::~Connection() {
-  if (renew_at_) send({{"unsubscribe", json::object()}});
+  if (!renew_at_) return;
+  // A daemon that does not hear it ends the subscription by itself.
+  try {
+    send({{"unsubscribe", json::object()}});
+  } catch (const std::exception&) {
+    return;
+  }
 }
 
 void Connection::connect() {
