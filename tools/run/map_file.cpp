@@ -80,7 +80,7 @@ void write_map(const std::string& path, const std::vector<MapPoint>& points, Map
   for (const MapPoint& point : points) {
     const double s = color == MapColor::intensity
                          ? of_intensity(point.intensity)
-                         : double{(point.position_m.z() - low_m) / (high_m - low_m)};
+                         : static_cast<double>((point.position_m.z() - low_m) / (high_m - low_m));
     append_point(point, along(height_colors(), s), ply, bytes);
     if (bytes.size() < (1U << 20U)) continue;
     file << bytes;
