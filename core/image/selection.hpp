@@ -45,7 +45,7 @@ class Selection {
   std::vector<Feature> chosen_;
 };
 
-/// How features are spread that are left of more.
+/// How thin_out() spreads the features that it keeps.
 enum class Evenly {
   in_image,    ///< one of so many returns of a ring
   along_rings  ///< one of so many metres: returns lie the farther apart the farther they are

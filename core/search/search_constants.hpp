@@ -34,7 +34,7 @@ inline constexpr double kSamePlace_m = 1.5, kSamePlace_rad = 0.1;
 
 // Significance, in sigmas.
 inline constexpr double kClearly = 2.0;      ///< to prefer a hypothesis
-inline constexpr double kBeyondDoubt = 3.0;  ///< to drop one on a quarter of the points
+inline constexpr double kBeyondDoubt = 3.0;  ///< to drop one on few points, or a usual motion
 inline constexpr double kProbably = 1.0;     ///< to restart from another motion
 
 }  // namespace lilo::core::search

@@ -2,6 +2,7 @@
 
 #include "core/registration/comparison.hpp"
 #include "core/search/hypothesis.hpp"
+#include "core/search/search_constants.hpp"
 
 #include <Eigen/LU>
 
@@ -34,13 +35,12 @@ LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_featu
 Solution LocalOdometry::align_moving(const std::vector<Feature>& features, const Prior& prior,
                                      std::size_t finest_level) {
   constexpr double kExceptional = 9.0;  // squared sigmas of the process noise
-  constexpr double kBeyondDoubt = 3.0;  // sigmas
   Solution found = align(features, prior, finest_level);
   if (normalised_innovation(prior, found.trajectory.knots).maxCoeff() < kExceptional) return found;
   Prior usual_prior = prior;
   usual_prior.has_heavy_tails = false;
   Solution usual = align(features, usual_prior, finest_level);
-  return is_significant(found.inliers, usual.inliers, kBeyondDoubt) ? found : usual;
+  return is_significant(found.inliers, usual.inliers, search::kBeyondDoubt) ? found : usual;
 }
 
 Solution LocalOdometry::align_moving_or_standing(const std::vector<Feature>& features,

@@ -29,7 +29,8 @@ Tracker::Tracker(const OdometryConfig& config)
 
 Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, StageHook hook) {
   scan_ = observe(scan, selection_.choose(features));
-  // What whole cells leave open, half ones may tell: the lamps of a tunnel.
+  // Half cells may inform along a direction that is weak with whole ones: they tell the lamps of a
+  // tunnel from its lining.
   if (alignment_.weak.count > 0) scan_.finest_level = LocalMaps::kNarrow;
   hook(Stage::filter);
   if (session_.is_over) begin_session();
@@ -121,8 +122,8 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
 
 /// Whether an alignment found too little of the scan in the map.
 bool Tracker::is_lost(const Solution& solution) const {
-  // Of the features. Foliage and grass match hardly at all: a park may come down to a fifth and be
-  // aligned well. That less matches than usual, the last line notices.
+  // Of the features. Foliage and grass hardly match: in a park a fifth of the features may match,
+  // and the alignment be good. The last line notices where less fits than usual.
   constexpr double kMinMatched = 0.05;
   constexpr double kMinWeight = 0.3;  // mean robust weight; a good alignment has 0.7 and more
   const double matched = solution.matched;
