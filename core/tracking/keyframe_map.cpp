@@ -83,8 +83,8 @@ bool KeyframeMap::is_due(const AlignedScan& scan) const {
 
 void KeyframeMap::hold(const std::vector<Feature>& features, const Trajectory& trajectory,
                        std::int64_t end_ns, std::size_t finest_level) {
-  // In an abrupt turn after the start, near points hold the pose. Later the near cells are full, and
-  // far points hold the attitude.
+  // In an abrupt turn after the start, near points hold the pose. Later the near cells are full,
+  // and far points hold the attitude.
   const Evenly evenly = keyframes_ < kYoungMap ? Evenly::in_image : Evenly::along_rings;
   thin_out(features, static_cast<std::size_t>(config_.map_features), evenly, held_.features);
   held_.trajectory = trajectory;
