@@ -9,7 +9,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -34,6 +36,18 @@ inline std::optional<json> next_of_kind(UdpSocket& socket, const std::string& ki
     if (message.contains(kind)) return message;
   }
   return std::nullopt;
+}
+
+/// The poses in a text of one message a line; all lines are held against the schema.
+inline std::size_t poses_in(const std::string& json_lines) {
+  std::istringstream text(json_lines);
+  std::size_t poses = 0;
+  for (std::string line; std::getline(text, line);) {
+    const json message = json::parse(line);
+    EXPECT_EQ(violations(protocol_schema(), message), std::vector<std::string>{}) << line;
+    poses += message.contains("pose") ? 1 : 0;
+  }
+  return poses;
 }
 
 /// The first health datagram in which `member` is `value`, of the next fifteen; null if none is.
