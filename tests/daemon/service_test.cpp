@@ -134,7 +134,7 @@ TEST(Sensor, UnpluggedAndReplugged) {
   ASSERT_FALSE(silent.is_null());
   EXPECT_GT(silent["health"]["pose_age_s"], 0.5);
   EXPECT_EQ(silent["health"]["complaints"][0], "sensor silent");
-  EXPECT_GT(silent["health"]["sensor_silent_s"], 1.0);
+  EXPECT_GE(silent["health"]["sensor_silent_s"], 1.0) << "more than 1 s, in tenths";
   Sensor().turn(lilod, 3.0);  // its clock starts again
   const json after = next_of_kind(lilod.sink(), "pose").value_or(json());
   EXPECT_EQ(after["session"], before["session"]);
