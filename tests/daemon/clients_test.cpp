@@ -163,14 +163,7 @@ TEST(Listen, PrintsJsonLinesAndATumFile) {
   words.insert(words.end(), {"--json", "--tum", tum.path()});
   const Finished lines = run_to_end(words);
   EXPECT_EQ(lines.exit_code, 0) << lines.error;
-  std::istringstream text(lines.output);
-  std::size_t poses = 0;
-  for (std::string line; std::getline(text, line);) {
-    const json message = json::parse(line);
-    EXPECT_EQ(violations(protocol_schema(), message), std::vector<std::string>{});
-    poses += message.contains("pose") ? 1 : 0;
-  }
-  EXPECT_EQ(poses, 3U);
+  EXPECT_EQ(poses_in(lines.output), 3U);
   std::ifstream file(tum.path());
   std::size_t rows = 0;
   for (std::string line; std::getline(file, line); ++rows) {

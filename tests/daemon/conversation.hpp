@@ -9,7 +9,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -36,6 +38,18 @@ inline std::optional<json> next_of_kind(UdpSocket& socket, const std::string& ki
   return std::nullopt;
 }
 
+/// The poses in a text of one message a line; all lines are held against the schema.
+inline std::size_t poses_in(const std::string& json_lines) {
+  std::istringstream text(json_lines);
+  std::size_t poses = 0;
+  for (std::string line; std::getline(text, line);) {
+    const json message = json::parse(line);
+    EXPECT_EQ(violations(protocol_schema(), message), std::vector<std::string>{}) << line;
+    poses += message.contains("pose") ? 1 : 0;
+  }
+  return poses;
+}
+
 /// The first health datagram in which `member` is `value`, of the next fifteen; null if none is.
 template <typename Value>
 json health_where(UdpSocket& socket, const char* member, const Value& value) {
@@ -52,10 +66,10 @@ inline json ask(UdpSocket& client, const Lilod& lilod, const std::string& reques
   return next_of_kind(client, kind).value_or(json());
 }
 
-/// A VLP-16 in a round room, three times as fast as life, or slower than life under a sanitizer.
-/// Its clock goes on from turn to turn.
+/// A VLP-16 in a round room. Its clock goes on from turn to turn.
 class Sensor {
  public:
+  /// Three times as fast as life, or slower than life under a sanitizer, whatever the daemon does.
   void turn(const Lilod& lilod, double turns) {
     PacketView packet;
     for (double sent = 0.0; sent < turns * RoundRoomSource::kPacketsPerTurn; sent += 1.0) {
@@ -65,20 +79,46 @@ class Sensor {
       std::this_thread::sleep_for(std::chrono::microseconds(kSanitized ? 3000 : 400));
     }
   }
+  /// The same, but each turn waits for the pose of the one before: on a busy computer, too, the
+  /// daemon gets no more scans than it can work off.
+  void turn_in_step(const Lilod& lilod, int turns) {
+    for (int k = 0; k < turns; ++k) {
+      turn(lilod, 1.0);
+      // The first scan of a sensor ends with its second turn.
+      last_pose_ = last_pose_ ? next_pose(lilod) : pose_now(lilod);
+    }
+  }
   void be_in_a_room_of(unsigned radius_m) { source_.be_in_a_room_of(radius_m); }
 
  private:
+  /// As the daemon answers; the same text until it has another pose.
+  std::string pose_now(const Lilod& lilod) {
+    asks_.send_to(lilod.server_port(), R"({"query":"pose"})");
+    return asks_.receive(milliseconds(500)).value_or("");
+  }
+  /// Not for ever: the daemon may be stopped.
+  std::string next_pose(const Lilod& lilod) {
+    const auto deadline = std::chrono::steady_clock::now() + seconds(5);
+    std::string pose = pose_now(lilod);
+    while (pose == last_pose_ && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(milliseconds(20));  // it answers 200 requests a second
+      pose = pose_now(lilod);
+    }
+    return pose;
+  }
+
   RoundRoomSource source_{1'000'000};
-  UdpSocket socket_;
+  UdpSocket socket_, asks_;
+  std::optional<std::string> last_pose_;  ///< nothing before the first turn
 };
 
-/// Turns the sensor until the object goes.
+/// Turns the sensor in step with the daemon until the object goes.
 class Turning {
  public:
   explicit Turning(const Lilod& lilod)
       : thread_([this, &lilod] {
           Sensor sensor;
-          while (!stop_) sensor.turn(lilod, 0.5);
+          while (!stop_) sensor.turn_in_step(lilod, 1);
         }) {}
   ~Turning() {
     stop_ = true;

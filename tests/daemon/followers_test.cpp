@@ -23,14 +23,7 @@ TEST_F(Follower, RecordsJsonLinesAndTum) {
   const Finished first = run({"record", lines, "--count", "5"});
   ASSERT_EQ(first.exit_code, 0) << first.error;
   EXPECT_EQ(first.output.rfind(lines + ": 5 poses", 0), 0U) << first.output;
-  std::istringstream text(text_of(lines));
-  std::size_t poses = 0;
-  for (std::string line; std::getline(text, line);) {
-    const json message = json::parse(line);
-    EXPECT_EQ(violations(protocol_schema(), message), std::vector<std::string>{});
-    poses += message.contains("pose") ? 1 : 0;
-  }
-  EXPECT_EQ(poses, 5U);
+  EXPECT_EQ(poses_in(text_of(lines)), 5U);
   ASSERT_EQ(run({"record", tum, "--count", "4"}).exit_code, 0);
   const std::string rows = text_of(tum);
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 4) << rows;

@@ -158,7 +158,8 @@ long resident_kb(pid_t pid) {
 
 // From hosts that may ask and hosts that may not, each from a port of its own.
 TEST_F(Hostile, TenThousandForgedSubscribersTakeNoMemory) {
-  Lilod lilod(kOpen);
+  // AddressSanitizer would keep what was freed.
+  Lilod lilod(kOpen, {{"ASAN_OPTIONS", "quarantine_size_mb=0"}});
   ASSERT_TRUE(lilod.wait_ready());
   std::mt19937 rng(2);
   std::size_t bytes_in = 0, bytes_out = 0, answers = 0;
@@ -180,13 +181,14 @@ TEST_F(Hostile, TenThousandForgedSubscribersTakeNoMemory) {
   ASSERT_EQ(health_of(lilod)["clients"], 0);
   const long before_kb = resident_kb(lilod.process().pid());
   forge(10'000);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   EXPECT_EQ(health_of(lilod)["clients"], 0);
   const long after_kb = resident_kb(lilod.process().pid());
   for (const auto& datagram : sent_out()) {
     bytes_out += datagram.payload.size();
     ++answers;
   }
+  // On a busy computer the last requests are answered long after they were sent.
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   EXPECT_GT(before_kb, 0);
   EXPECT_LE(after_kb, before_kb + 512);
   EXPECT_GT(answers, 0U);

@@ -24,7 +24,7 @@ class Operator : public testing::Test {
   }
   /// Until the daemon tracks and has nothing to complain of, or not.
   [[nodiscard]] bool becomes_good() const {
-    const auto deadline = std::chrono::steady_clock::now() + seconds(20);
+    const auto deadline = std::chrono::steady_clock::now() + seconds(60);
     while (std::chrono::steady_clock::now() < deadline) {
       if (run({"status"}).exit_code == 0) return true;
       std::this_thread::sleep_for(milliseconds(200));

@@ -8,7 +8,7 @@ namespace lilo {
 namespace {
 
 TEST_F(Operator, StatusIsBadWithoutASensor) {
-  std::this_thread::sleep_for(milliseconds(2500));
+  ASSERT_FALSE(health_where(lilod.sink(), "status", "silent").is_null());
   const Finished status = run({"status"});
   EXPECT_EQ(status.exit_code, 1);
   EXPECT_NE(status.output.find("silent"), std::string::npos) << status.output;

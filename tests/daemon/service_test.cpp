@@ -128,44 +128,56 @@ TEST(Watchdog, FiresWhenTheWorkerStalls) {
 TEST(Sensor, UnpluggedAndReplugged) {
   Lilod lilod;
   ASSERT_TRUE(lilod.wait_ready());
-  Sensor().turn(lilod, 3.0);
+  Sensor().turn_in_step(lilod, 3);
   const json before = next_of_kind(lilod.sink(), "pose").value_or(json());
   const json silent = health_where(lilod.sink(), "status", "silent");
   ASSERT_FALSE(silent.is_null());
   EXPECT_GT(silent["health"]["pose_age_s"], 0.5);
   EXPECT_EQ(silent["health"]["complaints"][0], "sensor silent");
-  EXPECT_GT(silent["health"]["sensor_silent_s"], 1.0);
+  EXPECT_GE(silent["health"]["sensor_silent_s"], 1.0) << "more than 1 s, in tenths";
   Sensor().turn(lilod, 3.0);  // its clock starts again
   const json after = next_of_kind(lilod.sink(), "pose").value_or(json());
   EXPECT_EQ(after["session"], before["session"]);
   EXPECT_GT(after["seq"], before["seq"]);
 }
 
+/// What the daemon has sent its sink: all poses, and the last health with a time after `after_s`.
+struct Told {
+  std::vector<json> poses;
+  json health;
+};
+
+/// Reads until there is such a health and nothing more comes.
+Told told_after(double after_s, Lilod& lilod) {
+  Told told;
+  const auto deadline = std::chrono::steady_clock::now() + seconds(30);
+  while (std::chrono::steady_clock::now() < deadline) {
+    const auto datagram = lilod.sink().receive(milliseconds(300));
+    if (!datagram && !told.health.is_null()) break;
+    if (!datagram) continue;
+    const json message = json::parse(*datagram);
+    if (message.contains("pose")) told.poses.push_back(message);
+    if (message["timestamp"] > after_s && message.contains("health")) told.health = message;
+  }
+  return told;
+}
+
 // Somebody sets the computer's clock an hour ahead while the sensor turns: the session goes on, and
-// no pose jumps, no latency is an hour.
+// no pose jumps, no duration is longer than the test.
 TEST(Clock, AStepOfAnHourBendsNothing) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer has to be loaded first";
   const std::string step_file = testing::TempDir() + "lilo_step_" + std::to_string(getpid());
   std::filesystem::remove(step_file);
+  const auto began = std::chrono::steady_clock::now();
   Lilod lilod("",
               {{"LD_PRELOAD", LILO_TESTS_DIR "/libstep_clock.so"}, {"STEP_CLOCK_FILE", step_file}});
   ASSERT_TRUE(lilod.wait_ready());
   Sensor sensor;
-  sensor.turn(lilod, 5.0);
+  sensor.turn_in_step(lilod, 5);
   std::ofstream(step_file) << "now";
-  sensor.turn(lilod, 10.0);
-  const double half_an_hour_on = static_cast<double>(std::time(nullptr)) + 1800.0;
-  std::vector<json> poses;
-  json health;
-  const auto deadline = std::chrono::steady_clock::now() + seconds(10);
-  while (std::chrono::steady_clock::now() < deadline) {
-    const auto datagram = lilod.sink().receive(milliseconds(300));
-    if (!datagram && !health.is_null()) break;  // all that was said has been read
-    if (!datagram) continue;
-    const json message = json::parse(*datagram);
-    if (message.contains("pose")) poses.push_back(message);
-    if (message["timestamp"] > half_an_hour_on && message.contains("health")) health = message;
-  }
+  sensor.turn_in_step(lilod, 10);
+  const auto [poses, health] = told_after(static_cast<double>(std::time(nullptr)) + 1800.0, lilod);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
   std::filesystem::remove(step_file);
   ASSERT_FALSE(health.is_null()) << "the new time is in force";
   ASSERT_GT(poses.size(), 10U);
@@ -176,13 +188,13 @@ TEST(Clock, AStepOfAnHourBendsNothing) {
     const json& pose = poses[k]["pose"];
     EXPECT_NE(pose["status"], "lost");
     EXPECT_LT(std::abs(pose["position"]["x"].get<double>()), 0.1) << "it stands";
-    EXPECT_LT(pose["latency_ms"], 1000.0);
+    EXPECT_LT(pose["latency_ms"], took.count() * 1e3);
   }
   EXPECT_EQ(health["health"]["clock_steps"], 1);
   EXPECT_NE(health["health"]["complaints"].dump().find("the computer's clock was set"),
             std::string::npos);
-  EXPECT_LT(health["health"]["uptime_s"], 60.0);
-  EXPECT_LT(health["health"]["sensor_silent_s"], 60.0);
+  EXPECT_LT(health["health"]["uptime_s"], took.count());
+  EXPECT_LT(health["health"]["sensor_silent_s"], took.count());
 }
 
 // kill -9 and a new start: within two seconds a client sees a new session.
