@@ -32,10 +32,11 @@ struct SubscribeConfig {
   std::uint16_t port = 9871;       ///< 0: nobody can ask
   std::vector<std::string> allow;  ///< addresses and CIDR ranges besides loopback
   int max_clients = 16;
-  double lease_s = 5.0;    ///< longest, and the one granted when none is asked for
-  int points_clients = 4;  ///< subscribers that may have points; 0: none
-  int scan_points = 600;   ///< most points a scan they get of what it was aligned by,
-  int map_points = 500;    ///< and of what it added to the map
+  double lease_s = 5.0;     ///< longest, and the one granted when none is asked for
+  int points_clients = 4;   ///< subscribers that may have points; 0: none
+  int scan_points = 600;    ///< most points a scan they get of what it was aligned by,
+  int map_points = 500;     ///< and of what it added to the map
+  int packets_clients = 0;  ///< subscribers that may have the sensor's packets; 0: none
 };
 
 /// What the daemon keeps.

@@ -254,6 +254,11 @@ std::vector<Key> subscribe_keys() {
               "a datagram of 1.2 kB."),
       integer("subscribe.map_points", LILO_MEMBER(subscribe.map_points), 0, 4000, "points",
               kRestart, "The same for those that the scan added to the map."),
+      integer("subscribe.packets_clients", LILO_MEMBER(subscribe.packets_clients), 0, 4, "",
+              kRestart,
+              "Subscribers at one time that may have the sensor's packets too, as lilo record "
+              "--packets asks for; 0: nobody. To each go 0.9 MB/s of a VLP-16, 4.3 MB/s of an "
+              "HDL-64E."),
   };
 }
 

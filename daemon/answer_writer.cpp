@@ -10,6 +10,19 @@ namespace {
 
 constexpr const char* kSoftware = "lilod " LILO_VERSION;
 
+const char* to_string(PacketsAnswer answer) {
+  switch (answer) {
+    case PacketsAnswer::granted:
+      return "granted";
+    case PacketsAnswer::taken:
+      return "taken";
+    case PacketsAnswer::not_asked:
+    case PacketsAnswer::off:
+      break;
+  }
+  return "off";
+}
+
 }  // namespace
 
 AnswerWriter::AnswerWriter(const PublishConfig& publish,
@@ -28,7 +41,8 @@ std::string_view AnswerWriter::finish() {
   return out_.finish();
 }
 
-std::string_view AnswerWriter::hello(double ttl_s, std::optional<PointsGranted> points) {
+std::string_view AnswerWriter::hello(double ttl_s, std::optional<PointsGranted> points,
+                                     PacketsAnswer packets) {
   begin("hello");
   out_.text("software", kSoftware);
   out_.number("ttl_s", ttl_s, 3);
@@ -40,6 +54,7 @@ std::string_view AnswerWriter::hello(double ttl_s, std::optional<PointsGranted> 
     out_.integer("map", points->map);
     out_.end_object();
   }
+  if (packets != PacketsAnswer::not_asked) out_.text("packets", to_string(packets));
   return finish();
 }
 

@@ -4,6 +4,7 @@
 #include "daemon/json_writer.hpp"
 #include "daemon/saver.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -16,6 +17,14 @@ struct PointsGranted {
   int scan = 0, map = 0;
 };
 
+/// What became of a subscriber's wish for packets.
+enum class PacketsAnswer : std::uint8_t {
+  not_asked,
+  granted,
+  off,    ///< by configuration nobody gets any
+  taken,  ///< by as many others as may have them
+};
+
 /// Writes the answers of PROTOCOL.md. Each lives until the next one is written. One thread.
 class AnswerWriter {
  public:
@@ -23,7 +32,8 @@ class AnswerWriter {
   AnswerWriter(const PublishConfig& publish, std::function<const std::string&()> session);
 
   /// `ttl_s`: the lease granted, 0: none.
-  std::string_view hello(double ttl_s, std::optional<PointsGranted> points = {});
+  std::string_view hello(double ttl_s, std::optional<PointsGranted> points = {},
+                         PacketsAnswer packets = PacketsAnswer::not_asked);
   /// To an address that has not shown one.
   std::string_view token(std::string_view token);
   std::string_view error(std::string_view why);

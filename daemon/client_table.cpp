@@ -5,21 +5,28 @@
 namespace lilo {
 
 const ClientTable::Client* ClientTable::renew(const boost::asio::ip::udp::endpoint& endpoint,
-                                              std::int64_t lease_end_ns, bool wants_points) {
+                                              std::int64_t lease_end_ns, Extras wants) {
   auto client = std::find_if(clients_.begin(), clients_.end(),
                              [&](const Client& c) { return c.endpoint == endpoint; });
   if (client == clients_.end()) {
-    if (clients_.size() >= capacity_) return nullptr;
+    if (clients_.size() >= most_.clients) return nullptr;
     client = clients_.insert(client, {.endpoint = endpoint});
   }
   client->lease_end_ns = lease_end_ns;
-  client->has_points = wants_points && (client->has_points || points_clients() < points_capacity_);
+  Extras& has = client->has;
+  has.points = wants.points && (has.points || points_clients() < most_.points);
+  has.packets = wants.packets && (has.packets || packets_clients() < most_.packets);
   return &*client;
 }
 
 std::size_t ClientTable::points_clients() const {
   return static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(),
-                                                [](const Client& c) { return c.has_points; }));
+                                                [](const Client& c) { return c.has.points; }));
+}
+
+std::size_t ClientTable::packets_clients() const {
+  return static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(),
+                                                [](const Client& c) { return c.has.packets; }));
 }
 
 void ClientTable::remove(const boost::asio::ip::udp::endpoint& endpoint) {

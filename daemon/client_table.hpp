@@ -1,5 +1,7 @@
 #pragma once
 
+#include "daemon/extras.hpp"
+
 #include <boost/asio/ip/udp.hpp>
 
 #include <cstddef>
@@ -8,32 +10,33 @@
 
 namespace lilo {
 
-/// Who subscribed, until when, and whether to points. Never more than `capacity`, and of these
-/// `points_capacity` with points.
+/// Who subscribed, until when, and to what. Never more than `most.clients`, and of these
+/// `most.points` with points and `most.packets` with packets.
 class ClientTable {
  public:
+  struct Capacity {
+    std::size_t clients = 0, points = 0, packets = 0;
+  };
   struct Client {
     boost::asio::ip::udp::endpoint endpoint;
     std::int64_t lease_end_ns = 0;
-    bool has_points = false;
+    Extras has;
   };
 
-  explicit ClientTable(std::size_t capacity, std::size_t points_capacity = 0)
-      : capacity_(capacity), points_capacity_(points_capacity) {
-    clients_.reserve(capacity);
-  }
+  explicit ClientTable(const Capacity& most) : most_(most) { clients_.reserve(most.clients); }
 
   /// What is now held of it, until the next change; nullptr when the table is full of others.
   const Client* renew(const boost::asio::ip::udp::endpoint& endpoint, std::int64_t lease_end_ns,
-                      bool wants_points = false);
+                      Extras wants = {});
   void remove(const boost::asio::ip::udp::endpoint& endpoint);
   void expire(std::int64_t now_ns);
   [[nodiscard]] bool contains(const boost::asio::ip::udp::endpoint& endpoint) const;
   [[nodiscard]] const std::vector<Client>& clients() const { return clients_; }
   [[nodiscard]] std::size_t points_clients() const;
+  [[nodiscard]] std::size_t packets_clients() const;
 
  private:
-  std::size_t capacity_, points_capacity_;
+  Capacity most_;
   std::vector<Client> clients_;
 };
 

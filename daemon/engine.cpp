@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kReportSlots = 64;  // 6 s of poses while the publisher is held up
 constexpr std::size_t kPointsSlots = 4;
+constexpr std::size_t kPacketSlots = 1024;  // 1.3 MB: 0.3 s of an HDL-64E
 constexpr std::size_t kThreadStackBytes = 1 << 20;
 
 /// What a thread tells of itself before it starts work.
@@ -75,8 +76,9 @@ Engine::Engine(const Config& config, std::unique_ptr<PacketSource> source)
       scans_(static_cast<std::size_t>(config.realtime.ring_slots)),
       reports_(kReportSlots),
       points_(kPointsSlots),
+      packets_(config.subscribe.packets_clients > 0 ? kPacketSlots : 0),
       receiver_(std::move(source), sensor_config(config), config.odometry, prepared(scans_, config),
-                scan_ready_, counters_),
+                scan_ready_, counters_, &packets_),
       worker_(config.odometry, scans_, scan_ready_, reports_, prepared(points_, config.subscribe),
               report_ready_, counters_) {}
 

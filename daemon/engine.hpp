@@ -32,6 +32,9 @@ class Engine {
   /// What was seen with the poses, while want_points() says so.
   [[nodiscard]] PointsRing& points() { return points_; }
   void want_points(bool wanted) { counters_.points_asked = wanted; }
+  /// The sensor's packets, while want_packets() says so.
+  [[nodiscard]] PacketRing& packets() { return packets_; }
+  void want_packets(bool wanted) { counters_.packets_asked = wanted; }
   [[nodiscard]] Wakeup& report_ready() { return report_ready_; }
   [[nodiscard]] const PipelineCounters& counters() const { return counters_; }
   [[nodiscard]] const Receiver& receiver() const { return receiver_; }
@@ -55,6 +58,7 @@ class Engine {
   ScanRing scans_;
   ReportRing reports_;
   PointsRing points_;
+  PacketRing packets_;
   Receiver receiver_;
   Worker worker_;
   bool map_asked_ = false;  // and not yet taken

@@ -66,10 +66,12 @@ struct Health {
   std::uint64_t clock_steps = 0;  ///< the computer's UTC was set while it ran
   double clock_step_s = 0.0;      ///< the last of them
   std::size_t ring_slots = 0, ring_high_water = 0, clients = 0;
-  std::uint64_t clients_refused = 0;  ///< subscriptions beyond subscribe.max_clients
-  double rate_hz = 0.0;               ///< poses in the last second
-  FaultCounts totals;                 ///< of the counts above, those that are faults
-  FaultCounts recent;                 ///< in the last ten seconds
+  std::uint64_t clients_refused = 0;   ///< subscriptions beyond subscribe.max_clients
+  std::uint64_t packets_sent = 0;      ///< the sensor's, to subscribers that asked for them,
+  std::uint64_t packets_not_sent = 0;  ///< and those they missed because we were behind
+  double rate_hz = 0.0;                ///< poses in the last second
+  FaultCounts totals;                  ///< of the counts above, those that are faults
+  FaultCounts recent;                  ///< in the last ten seconds
 
   Quantiles latency_ms, processing_ms;  ///< of the last minute
   std::array<Quantiles, kStageCount> stages_ms;

@@ -127,6 +127,8 @@ void HealthMonitor::collect_counts(const PublisherCounts& published, Health& h) 
   h.clock_step_s = clock_step_s_;
   h.clients = published.clients;
   h.clients_refused = published.clients_refused;
+  h.packets_sent = published.packets_sent;
+  h.packets_not_sent = published.packets_not_sent + counters.packets_dropped;
   h.ring_slots = engine_.ring_slots();
   h.ring_high_water = counters.ring_high_water;
 }

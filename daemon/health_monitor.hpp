@@ -14,6 +14,7 @@ struct PublisherCounts {
   std::uint64_t poses_sent = 0, poses_not_sent = 0, send_errors = 0;
   std::size_t clients = 0;
   std::uint64_t clients_refused = 0;
+  std::uint64_t packets_sent = 0, packets_not_sent = 0;  ///< of the sensor, to subscribers
 };
 
 /// How this daemon is called among those of one computer: the configuration file's name without its

@@ -15,6 +15,7 @@
 /// What the three threads hand to each other:
 ///   receiver ==ScanSlot==> worker ==PoseReport==> publisher, and counters that all may read.
 ///                                ==PointsReport==>  while a client has asked for points
+///   receiver ==PacketDatagram==>              publisher, while a client has asked for packets
 namespace lilo {
 
 struct ScanSlot {
@@ -66,11 +67,13 @@ struct PipelineCounters {
   std::atomic<std::uint64_t> scans_processed{0};  ///< worker
   std::atomic<std::uint64_t> reports_dropped{0};  ///< worker: the publisher was asleep
   std::atomic<std::uint64_t> ring_high_water{0};  ///< receiver: most scans that ever waited
+  std::atomic<std::uint64_t> packets_dropped{0};  ///< receiver: asked for, but no slot was free
   std::atomic<std::uint64_t> resets_asked{0};     ///< publisher
   std::atomic<std::uint64_t> resets_done{0};      ///< worker
   std::atomic<std::uint64_t> maps_asked{0};       ///< publisher
   std::atomic<std::uint64_t> maps_done{0};        ///< worker
   std::atomic<bool> points_asked{false};          ///< publisher: somebody looks on
+  std::atomic<bool> packets_asked{false};         ///< publisher: somebody records packets
   std::atomic<bool> behind{false};                ///< receiver asks, worker answers by skipping
   std::atomic<bool> stop{false};                  ///< publisher asks both to end
 };

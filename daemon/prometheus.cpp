@@ -147,6 +147,10 @@ void write_scans(Metrics& m, const Health& h) {
   m.gauge("lilo_ring_high_water_scans", "Most scans that ever waited.", h.ring_high_water);
   m.gauge("lilo_clients", "Subscribers.", h.clients);
   m.counter("lilo_clients_refused_total", "Subscriptions beyond the limit.", h.clients_refused);
+  m.counter("lilo_packets_sent_total", "Packets passed on to subscribers that record.",
+            h.packets_sent);
+  m.counter("lilo_packets_not_sent_total", "Those for which there was no room.",
+            h.packets_not_sent);
   m.quantiles("lilo_latency_seconds", "Last packet of a revolution to its datagram, last minute.",
               h.latency_ms);
   m.quantiles("lilo_processing_seconds", "Odometry of one scan, last minute.", h.processing_ms);

@@ -31,7 +31,9 @@ Publisher::Publisher(boost::asio::io_context& io, const Config& config, Engine& 
                .health = [this] { return write_health_now(); },
                .reset = [this](const std::optional<Pose>& start) { return reset(start); },
                .save = [this](SaveKind kind, const SaveDone& done) { save(kind, done); },
-               .session = [this]() -> const std::string& { return message_.session; }}),
+               .session = [this]() -> const std::string& { return message_.session; },
+               .packets_asked = [this] { packet_sender_.start(); }}),
+      packet_sender_(io, engine, server_, [this] { send_poses(); }),
       saver_(io) {
   sinks_.set(config.publish.sinks);
 }
@@ -182,7 +184,9 @@ PublisherCounts Publisher::counts() const {
           .poses_not_sent = poses_not_sent_,
           .send_errors = sinks_.send_errors() + server_.send_errors(),
           .clients = server_.clients(),
-          .clients_refused = server_.clients_refused()};
+          .clients_refused = server_.clients_refused(),
+          .packets_sent = server_.packets_sent(),
+          .packets_not_sent = server_.packets_not_sent()};
 }
 
 std::string_view Publisher::write_health_now() {

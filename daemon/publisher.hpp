@@ -4,6 +4,7 @@
 #include "daemon/engine.hpp"
 #include "daemon/health_monitor.hpp"
 #include "daemon/metrics_writer.hpp"
+#include "daemon/packet_sender.hpp"
 #include "daemon/pose_message.hpp"
 #include "daemon/pose_record.hpp"
 #include "daemon/saver.hpp"
@@ -75,6 +76,7 @@ class Publisher {
   std::uint64_t poses_sent_ = 0, poses_not_sent_ = 0;
   Sinks sinks_;
   Server server_;
+  PacketSender packet_sender_;
   Saver saver_;
 };
 

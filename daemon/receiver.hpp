@@ -2,6 +2,7 @@
 
 #include "core/feature_extractor.hpp"
 #include "daemon/calibration_table.hpp"
+#include "daemon/packet_message.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/snapshot.hpp"
 #include "daemon/wakeup.hpp"
@@ -25,11 +26,13 @@ struct ReceiverState {
 /// Packets to scans and their features, on a thread of its own. The features are found while the
 /// scan is measured, packet by packet. Writes straight into ring slots. When the worker holds
 /// them all, the receiver writes into a spare one and asks the worker to skip to the newest scan.
+/// While counters.packets_asked, it copies every packet into a ring of its own; should that be
+/// full, the packet is counted and left out.
 class Receiver : private ScanSink {
  public:
   Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sensor,
            const OdometryConfig& odometry, ScanRing& scans, Wakeup& scan_ready,
-           PipelineCounters& counters);
+           PipelineCounters& counters, PacketRing* packets = nullptr);
 
   /// Until counters.stop, or the end of a source that has one. No allocation once every slot has
   /// held a scan.
@@ -48,6 +51,7 @@ class Receiver : private ScanSink {
  private:
   Scan& exchange(Scan& finished) override;
   void inserted(std::size_t index) override { extractor_.inserted(index); }
+  void copy(const PacketView& packet);
   void follow_scan();
   void share_state();
   void share_calibration(const SensorStatus& status);
@@ -56,6 +60,8 @@ class Receiver : private ScanSink {
   ScanRing& scans_;
   Wakeup& scan_ready_;
   PipelineCounters& counters_;
+  PacketRing* packets_;  // null: nobody may ask
+  std::uint64_t packets_read_ = 0;
   ScanSlot spare_;
   ScanSlot* writing_;
   FeatureExtractor extractor_;

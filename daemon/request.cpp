@@ -65,9 +65,11 @@ ParsedRequest read_fields(Request request, const json& body) {
     if (!ttl) return refuse("ttl_s: expected a number of seconds");
     request.ttl_s = (*ttl)[0];
   }
-  if (body.contains("points")) {
-    if (!body["points"].is_boolean()) return refuse("points: expected true or false");
-    request.points = body["points"].get<bool>();
+  for (const auto& [name, wanted] :
+       {std::pair{"points", &request.wants.points}, std::pair{"packets", &request.wants.packets}}) {
+    if (!body.contains(name)) continue;
+    if (!body[name].is_boolean()) return refuse(std::string(name) + ": expected true or false");
+    *wanted = body[name].get<bool>();
   }
   if (body.contains("pose")) {
     request.start_pose = pose_from(body["pose"]);

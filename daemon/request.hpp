@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/pose.hpp"
+#include "daemon/extras.hpp"
 
 #include <optional>
 #include <string>
@@ -20,7 +21,7 @@ struct Request {
   RequestKind kind = RequestKind::query;
   std::string token;               ///< empty: none
   std::optional<double> ttl_s;     ///< subscribe
-  bool points = false;             ///< subscribe
+  Extras wants;                    ///< subscribe
   std::string query;               ///< query: "hello", "pose" or "health"
   std::optional<Pose> start_pose;  ///< reset
   SaveKind save = SaveKind::map;   ///< save

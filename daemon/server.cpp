@@ -6,9 +6,11 @@
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/v6_only.hpp>
 #include <fmt/format.h>
+#include <linux/sockios.h>
 
 #include <algorithm>
 #include <stdexcept>
+#include <sys/ioctl.h>
 #include <utility>
 
 namespace lilo {
@@ -40,8 +42,9 @@ Server::Server(boost::asio::io_context& io, const SubscribeConfig& config,
       allow_(config.allow),
       writer_(publish, actions.session),
       actions_(std::move(actions)),
-      clients_(static_cast<std::size_t>(config.max_clients),
-               static_cast<std::size_t>(config.points_clients)),
+      clients_({.clients = static_cast<std::size_t>(config.max_clients),
+                .points = static_cast<std::size_t>(config.points_clients),
+                .packets = static_cast<std::size_t>(config.packets_clients)}),
       answers_left_(kAnswersPerSecond),
       answers_to_unproven_left_(kAnswersToUnprovenPerSecond) {
   if (config.port != 0) listen();
@@ -59,6 +62,9 @@ void Server::listen() {
                                          config_.bind_address, config_.port, error.message()));
   }
   socket_.non_blocking(true);
+  boost::asio::socket_base::send_buffer_size size;
+  socket_.get_option(size);
+  send_buffer_bytes_ = size.value();
   await_request();
 }
 
@@ -136,14 +142,22 @@ void Server::subscribe(const Request& request) {
   const double ttl_s = std::clamp(request.ttl_s.value_or(config_.lease_s), kShortestLeaseS,
                                   std::max(kShortestLeaseS, config_.lease_s));
   const ClientTable::Client* client =
-      clients_.renew(from_, monotonic_ns() + to_ns(ttl_s), request.points);
+      clients_.renew(from_, monotonic_ns() + to_ns(ttl_s), request.wants);
   if (client == nullptr) {
     ++clients_refused_;
     answer(writer_.error("too many clients"));
   } else if (answers_left_ > 0) {
     const PointsGranted points{config_.scan_points, config_.map_points};
-    answer(writer_.hello(ttl_s, client->has_points ? std::optional(points) : std::nullopt));
+    answer(writer_.hello(ttl_s, client->has.points ? std::optional(points) : std::nullopt,
+                         answer_packets(request.wants.packets, client->has.packets)));
   }
+  if (client != nullptr && client->has.packets) actions_.packets_asked();
+}
+
+PacketsAnswer Server::answer_packets(bool wanted, bool has) const {
+  if (!wanted) return PacketsAnswer::not_asked;
+  if (has) return PacketsAnswer::granted;
+  return config_.packets_clients > 0 ? PacketsAnswer::taken : PacketsAnswer::off;
 }
 
 void Server::answer_query(const std::string& query) {
@@ -172,10 +186,11 @@ void Server::answer_unproven(std::string_view datagram) {
   send_to(datagram, from_);
 }
 
-void Server::send_to(std::string_view datagram, const Endpoint& to) {
+bool Server::send_to(std::string_view datagram, const Endpoint& to) {
   error_code error;
   socket_.send_to(boost::asio::buffer(datagram.data(), datagram.size()), to, 0, error);
   if (error) ++send_errors_;
+  return !error;
 }
 
 void Server::send(std::string_view datagram) {
@@ -184,7 +199,23 @@ void Server::send(std::string_view datagram) {
 
 void Server::send_points(std::string_view datagram) {
   for (const ClientTable::Client& client : clients_.clients()) {
-    if (client.has_points) send_to(datagram, client.endpoint);
+    if (client.has.points) send_to(datagram, client.endpoint);
+  }
+}
+
+// Half of the buffer is poses'. What waits is what the network card has not taken yet, or has no
+// hardware address for: a client that reads nothing costs no room.
+bool Server::has_room_for_packets() {
+  int waiting_bytes = 0;
+  return ioctl(socket_.native_handle(), SIOCOUTQ, &waiting_bytes) != 0 ||
+         waiting_bytes < send_buffer_bytes_ / 2;
+}
+
+void Server::send_packet(std::string_view datagram) {
+  for (const ClientTable::Client& client : clients_.clients()) {
+    if (!client.has.packets) continue;
+    const bool sent = has_room_for_packets() && send_to(datagram, client.endpoint);
+    ++(sent ? packets_sent_ : packets_not_sent_);
   }
 }
 

@@ -28,6 +28,7 @@ struct ServerActions {
   /// Answers later, or at once when it cannot be.
   std::function<void(SaveKind, SaveDone)> save;
   std::function<const std::string&()> session;
+  std::function<void()> packets_asked;  ///< somebody was granted packets, or still has them
 };
 
 /// The side of the protocol that listens: subscriptions, queries, resets, saving. One thread.
@@ -48,11 +49,18 @@ class Server {
   void send(std::string_view datagram);
   /// To those that have subscribed to points.
   void send_points(std::string_view datagram);
+  /// To those that have subscribed to packets. Never takes the socket's last room, which is for
+  /// poses: a packet for which there is no more than that is counted and left out.
+  void send_packet(std::string_view datagram);
   /// Once a second: ends leases, allows new answers.
   void tick();
 
   [[nodiscard]] std::size_t clients() const { return clients_.clients().size(); }
   [[nodiscard]] bool has_points_clients() const { return clients_.points_clients() > 0; }
+  [[nodiscard]] bool has_packets_clients() const { return clients_.packets_clients() > 0; }
+  /// Packets to a subscriber that were sent, and those for which there was no room.
+  [[nodiscard]] std::uint64_t packets_sent() const { return packets_sent_; }
+  [[nodiscard]] std::uint64_t packets_not_sent() const { return packets_not_sent_; }
   /// Subscriptions for which there was no room.
   [[nodiscard]] std::uint64_t clients_refused() const { return clients_refused_; }
   [[nodiscard]] std::uint64_t send_errors() const { return send_errors_; }
@@ -65,6 +73,8 @@ class Server {
   void handle(std::string_view datagram);
   void serve(const Request& request);
   void subscribe(const Request& request);
+  [[nodiscard]] PacketsAnswer answer_packets(bool wanted, bool has) const;
+  [[nodiscard]] bool has_room_for_packets();
   void answer_query(const std::string& query);
   [[nodiscard]] bool is_known(const Endpoint& from) const;
   [[nodiscard]] bool is_proven(const ParsedRequest& parsed) const;
@@ -72,7 +82,7 @@ class Server {
   void answer(std::string_view datagram) { answer(datagram, from_); }
   void answer(std::string_view datagram, const Endpoint& to);
   void answer_unproven(std::string_view datagram);
-  void send_to(std::string_view datagram, const Endpoint& to);
+  bool send_to(std::string_view datagram, const Endpoint& to);
 
   boost::asio::ip::udp::socket socket_;
   SubscribeConfig config_;
@@ -85,6 +95,8 @@ class Server {
   std::array<char, kMaxRequestBytes + 1> buffer_{};  // one more byte tells an oversized request
   std::size_t request_bytes_ = 0;
   int answers_left_ = 0, answers_to_unproven_left_ = 0;  // this second
+  int send_buffer_bytes_ = 0;
+  std::uint64_t packets_sent_ = 0, packets_not_sent_ = 0;
   std::uint64_t clients_refused_ = 0, send_errors_ = 0;
 };
 

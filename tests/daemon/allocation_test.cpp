@@ -46,10 +46,11 @@ TEST(Allocation, IsCounted) {
 /// A sensor whose scans are taken as soon as they are there; notes the count at the given packet.
 class TakenSource : public PacketSource {
  public:
-  TakenSource(std::uint64_t packets, std::uint64_t warm_at, ScanRing& scans)
-      : source_(packets), warm_at_(warm_at), scans_(scans) {}
+  TakenSource(std::uint64_t packets, std::uint64_t warm_at, ScanRing& scans, PacketRing& copies)
+      : source_(packets), warm_at_(warm_at), scans_(scans), copies_(copies) {}
   ReadResult read(PacketView& packet, std::chrono::milliseconds timeout) override {
     while (scans_.front() != nullptr) scans_.release();
+    while (copies_.front() != nullptr) copies_.release();
     if (++read_ == warm_at_) allocations_when_warm = allocations;
     return source_.read(packet, timeout);
   }
@@ -61,19 +62,25 @@ class TakenSource : public PacketSource {
   RoundRoomSource source_;
   std::uint64_t warm_at_, read_ = 0;
   ScanRing& scans_;
+  PacketRing& copies_;
 };
 
-// Packets to scans in the ring: nothing after every slot has been written once.
+// Packets to scans in the ring, and to those who record: nothing after every slot has been written
+// once.
 TEST(Allocation, ReceiverHasNoneOnceWarm) {
   ScanRing scans(4);
   scans.for_each_slot([](ScanSlot& slot) { prepare_slot(slot, SensorModel::vlp16, {}); });
   Wakeup ready(Wakeup::Mode::blocking);
   PipelineCounters counters;
-  auto owned = std::make_unique<TakenSource>(4000, 800, scans);
+  counters.packets_asked = true;
+  PacketRing copies(8);
+  auto owned = std::make_unique<TakenSource>(4000, 800, scans, copies);
   const TakenSource& source = *owned;
-  Receiver receiver(std::move(owned), {.model = SensorModel::vlp16}, {}, scans, ready, counters);
+  Receiver receiver(std::move(owned), {.model = SensorModel::vlp16}, {}, scans, ready, counters,
+                    &copies);
   receiver.run();
   EXPECT_GT(counters.scans_received, 45U);
+  EXPECT_EQ(counters.packets_dropped, 0U);
   EXPECT_EQ(allocations - source.allocations_when_warm, 0U);
 }
 

@@ -1,3 +1,4 @@
+#include "daemon/packet_message.hpp"
 #include "tests/daemon/conversation.hpp"
 #include "tests/daemon/tun_network.hpp"
 
@@ -145,6 +146,37 @@ TEST_F(Hostile, ATokenServesItsOwnerAlone) {
     poses = poses || json::parse(datagram.payload).contains("pose");
   }
   EXPECT_TRUE(poses);
+}
+
+// Ten times as many bytes as poses: nobody must be able to have them sent to a third party.
+TEST_F(Hostile, PacketsGoToTheOwnerOfATokenAlone) {
+  Lilod lilod(std::string(kOpen) + "  packets_clients: 1\n");
+  ASSERT_TRUE(lilod.wait_ready());
+  const auto request = [](const std::string& token) {
+    return padded(R"({"subscribe":{"packets":true},"token":")" + token + "\"}");
+  };
+  const Endpoint owner = TunNetwork::host(0, 2, 5000), other = TunNetwork::host(0, 3, 5000),
+                 stranger = TunNetwork::host(9, 9, 5000);
+  for (const Endpoint& from : {owner, other, stranger})
+    network->send(from, lilod.server_port(), request("0123456789abcdef"));
+  Sensor().turn(lilod, 1.0);
+  std::string token;
+  for (const auto& datagram : sent_out()) {
+    ASSERT_FALSE(is_packet(datagram.payload));
+    EXPECT_LE(datagram.payload.size(), 256U);
+    if (datagram.to == owner) token = json::parse(datagram.payload)["hello"]["token"];
+  }
+  network->send(owner, lilod.server_port(), request(token));
+  network->send(other, lilod.server_port(), request(token));
+  EXPECT_EQ(health_of(lilod)["clients"], 1);
+  Sensor().turn(lilod, 1.0);
+  std::uint64_t packets = 0;
+  for (const auto& datagram : sent_out()) {
+    if (!is_packet(datagram.payload)) continue;
+    EXPECT_EQ(datagram.to, owner);
+    ++packets;
+  }
+  EXPECT_GT(packets, 70U);
 }
 
 long resident_kb(pid_t pid) {

@@ -16,6 +16,8 @@ namespace {
 // Each count under its own name: a number that reached another's place would be found there.
 TEST(Prometheus, NamesEveryCountOfTheDrivers) {
   Health h = a_health();
+  h.packets_sent = 116;
+  h.packets_not_sent = 117;
   h.driver = {.data_packets = 101,
               .position_packets = 102,
               .malformed_packets = 103,
@@ -39,7 +41,7 @@ TEST(Prometheus, NamesEveryCountOfTheDrivers) {
        {"packets_received", "packets_position", "packets_malformed", "packets_lost",
         "packets_duplicated", "packets_reordered", "packets_late", "packets_blind",
         "scans_complete", "scans_partial", "sensor_restarts", "sensor_stalls", "packets_foreign",
-        "packets_wrong_sensor", "packets_waiting"}) {
+        "packets_wrong_sensor", "packets_waiting", "packets_sent", "packets_not_sent"}) {
     const std::string line = "\nlilo_" + std::string(name) + "_total{instance=\"front\"} " +
                              std::to_string(expected++) + '\n';
     EXPECT_NE(text.find(line), std::string::npos) << line;

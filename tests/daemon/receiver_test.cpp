@@ -209,6 +209,45 @@ TEST(Receiver, FindsTheFeaturesOfPacketsThatWereOvertaken) {
   EXPECT_GT(overtaken, 30U);
 }
 
+// Every packet in order, then as many as there are slots; the others are counted.
+TEST(Receiver, CopiesPacketsForThoseWhoRecord) {
+  constexpr std::uint64_t kPackets = 100;
+  for (const std::size_t slots : {std::size_t{128}, std::size_t{40}}) {
+    ScanRing scans(4);
+    PacketRing packets(slots);
+    Wakeup ready(Wakeup::Mode::blocking);
+    PipelineCounters counters;
+    counters.packets_asked = true;
+    Receiver(std::make_unique<RoundRoomSource>(kPackets), kVlp16, {}, scans, ready, counters,
+             &packets)
+        .run();
+    ASSERT_EQ(packets.size(), std::min<std::size_t>(slots, kPackets));
+    EXPECT_EQ(counters.packets_dropped, kPackets - packets.size());
+    RoundRoomSource sent(kPackets);
+    for (std::uint64_t seq = 0; const PacketDatagram* datagram = packets.front(); ++seq) {
+      const auto message = read_packet(datagram->view());
+      PacketView expected;
+      sent.read(expected, {});
+      ASSERT_TRUE(message);
+      EXPECT_EQ(message->seq, seq);
+      EXPECT_EQ(message->packet.received_ns, expected.received_ns);
+      EXPECT_TRUE(std::ranges::equal(message->packet.payload, expected.payload));
+      packets.release();
+    }
+  }
+}
+
+TEST(Receiver, CopiesNoPacketsUnlessAsked) {
+  ScanRing scans(4);
+  PacketRing packets(128);
+  Wakeup ready(Wakeup::Mode::blocking);
+  PipelineCounters counters;
+  Receiver(std::make_unique<RoundRoomSource>(100), kVlp16, {}, scans, ready, counters, &packets)
+      .run();
+  EXPECT_EQ(packets.size(), 0U);
+  EXPECT_EQ(counters.packets_dropped, 0U);
+}
+
 long minor_faults() {
   rusage usage{};
   getrusage(RUSAGE_THREAD, &usage);

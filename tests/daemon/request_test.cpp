@@ -17,8 +17,10 @@ TEST(Request, ReadsEveryKind) {
   EXPECT_EQ(subscribe.request->kind, RequestKind::subscribe);
   EXPECT_EQ(subscribe.request->ttl_s, 2.5);
   EXPECT_EQ(subscribe.request->token, "abc");
-  EXPECT_FALSE(subscribe.request->points);
-  EXPECT_TRUE(parse_request(R"({"subscribe":{"points":true}})").request->points);
+  EXPECT_FALSE(subscribe.request->wants.points || subscribe.request->wants.packets);
+  EXPECT_TRUE(parse_request(R"({"subscribe":{"points":true}})").request->wants.points);
+  const Extras packets = parse_request(R"({"subscribe":{"packets":true}})").request->wants;
+  EXPECT_TRUE(packets.packets && !packets.points);
   EXPECT_EQ(parse_request(R"({"unsubscribe":{}})").request->kind, RequestKind::unsubscribe);
   EXPECT_EQ(parse_request(R"({"query":"pose"})").request->query, "pose");
   const auto reset = parse_request(
@@ -34,9 +36,10 @@ TEST(Request, SaysWhatIsWrong) {
   for (
       const char* bad :
       {"", "x", "[]", "1", "null", "{}", R"({"subscribe":1})", R"({"subscribe":{"ttl_s":"5"}})",
-       R"({"subscribe":{"ttl_s":1e999}})", R"({"subscribe":{"points":1}})", R"({"query":{}})",
-       R"({"save":{}})", R"({"save":"../map"})", R"({"token":5,"query":"pose"})",
-       R"({"reset":{"pose":1}})", R"({"reset":{"pose":{"position":{"x":1,"y":2,"z":3}}}})",
+       R"({"subscribe":{"ttl_s":1e999}})", R"({"subscribe":{"points":1}})",
+       R"({"subscribe":{"packets":"yes"}})", R"({"query":{}})", R"({"save":{}})",
+       R"({"save":"../map"})", R"({"token":5,"query":"pose"})", R"({"reset":{"pose":1}})",
+       R"({"reset":{"pose":{"position":{"x":1,"y":2,"z":3}}}})",
        R"({"reset":{"pose":{"position":{"x":1,"y":2,"z":3},"orientation":{"x":0,"y":0,"z":0,"w":2}}}})",
        R"({"subscribe":{}} {"subscribe":{}})"}) {
     const auto parsed = parse_request(bad);
@@ -66,7 +69,7 @@ TEST(Request, SurvivesAnything) {
 
 TEST(ClientTable, IsBoundedAndForgets) {
   using boost::asio::ip::udp;
-  ClientTable table(2);
+  ClientTable table({.clients = 2});
   const auto client = [](std::uint16_t port) {
     return udp::endpoint(boost::asio::ip::address_v4::loopback(), port);
   };
@@ -84,21 +87,28 @@ TEST(ClientTable, IsBoundedAndForgets) {
   EXPECT_EQ(table.clients().size(), 1U);
 }
 
-TEST(ClientTable, BoundsThoseWithPoints) {
+TEST(ClientTable, BoundsThoseWithPointsAndPackets) {
   using boost::asio::ip::udp;
-  ClientTable table(4, 1);
+  ClientTable table({.clients = 4, .points = 1, .packets = 1});
   const auto client = [](std::uint16_t port) {
     return udp::endpoint(boost::asio::ip::address_v4::loopback(), port);
   };
-  EXPECT_FALSE(table.renew(client(1), 100)->has_points) << "not asked for";
-  EXPECT_TRUE(table.renew(client(2), 100, true)->has_points);
-  EXPECT_FALSE(table.renew(client(1), 100, true)->has_points) << "only one may";
-  EXPECT_TRUE(table.renew(client(2), 200, true)->has_points) << "a renewal needs no room";
-  EXPECT_FALSE(table.renew(client(2), 200)->has_points) << "given back";
-  EXPECT_TRUE(table.renew(client(1), 200, true)->has_points);
-  EXPECT_EQ(table.points_clients(), 1U);
-  table.expire(200);
-  EXPECT_EQ(table.points_clients(), 0U);
+  for (const auto extra : {&Extras::points, &Extras::packets}) {
+    Extras wanted;
+    wanted.*extra = true;
+    const auto has = [&](std::uint16_t port, std::int64_t lease_end_ns, Extras wants) {
+      return table.renew(client(port), lease_end_ns, wants)->has.*extra;
+    };
+    EXPECT_FALSE(has(1, 100, {})) << "not asked for";
+    EXPECT_TRUE(has(2, 100, wanted));
+    EXPECT_FALSE(has(1, 100, wanted)) << "only one may";
+    EXPECT_TRUE(has(2, 200, wanted)) << "a renewal needs no room";
+    EXPECT_FALSE(has(2, 200, {})) << "given back";
+    EXPECT_TRUE(has(1, 200, wanted));
+    EXPECT_EQ(table.points_clients() + table.packets_clients(), 1U);
+    table.expire(200);
+    EXPECT_EQ(table.points_clients() + table.packets_clients(), 0U);
+  }
 }
 
 }  // namespace

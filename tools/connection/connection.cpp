@@ -1,6 +1,7 @@
 #include "tools/connection/connection.hpp"
 
 #include "daemon/message_head.hpp"
+#include "daemon/packet_message.hpp"
 
 #include <boost/asio/buffer.hpp>
 #include <fmt/format.h>
@@ -104,12 +105,27 @@ json Connection::ask(const json& request, const std::string& kind, Milliseconds 
 void Connection::subscribe(Subscription what) {
   subscription_ = what;
   renew();
+  if (what == Subscription::with_packets) await_packets();
+}
+
+// The answer comes before the first packet, so none is missed. Poses before it are.
+void Connection::await_packets() {
+  const auto deadline = Clock::now() + kPatience;
+  while (Clock::now() < deadline) {
+    const auto again = std::min(Clock::now() + kAskAgain, deadline);
+    while (wait(again, -1) == Waited::datagram) {
+      const auto datagram = take();
+      if (datagram && !is_packet(*datagram) && has_packets(understood(*datagram))) return;
+    }
+    renew();
+  }
+  throw std::runtime_error(no_answer(kPatience));
 }
 
 void Connection::renew() {
   renew_at_ = Clock::now() + kRenew;
   json what{{"ttl_s", 5}};
-  if (subscription_ == Subscription::packets) what["packets"] = true;
+  if (subscription_ == Subscription::with_packets) what["packets"] = true;
   send({{"subscribe", what}});
 }
 
@@ -124,8 +140,9 @@ std::optional<std::string_view> Connection::receive(Milliseconds at_most, int or
     if (waited == Waited::in_vain) continue;
     const auto datagram = take();
     if (!datagram) continue;
-    if (subscription_ == Subscription::packets && !datagram->starts_with('{')) return datagram;
+    if (is_packet(*datagram)) return datagram;
     const json message = understood(*datagram);
+    if (has_packets(message)) continue;
     if (!message.empty() && !is_answer(message)) return datagram;
   }
 }
@@ -169,6 +186,21 @@ json Connection::understood(std::string_view datagram) {
   if (hello.contains("token")) token_ = hello["token"].get<std::string>();
   if (hello.contains("token") && renew_at_) renew_at_ = Clock::time_point{};
   return message;
+}
+
+// Whether it is the answer to a subscription (one without a lease answers something else) and
+// grants us packets. Throws when it refuses them.
+bool Connection::has_packets(const json& message) const {
+  if (subscription_ != Subscription::with_packets || !message.contains("hello")) return false;
+  const json& hello = message["hello"];
+  if (hello.value("ttl_s", 0.0) <= 0.0) return false;
+  const std::string packets = hello.value("packets", "unknown");
+  if (packets == "granted") return true;
+  const char* why = "this lilod cannot: it is older than this lilo";
+  if (packets == "off") why = "set subscribe.packets_clients in its configuration";
+  if (packets == "taken")
+    why = "other clients have them, as many as subscribe.packets_clients says";
+  throw std::runtime_error(fmt::format("{}: sends no packets: {}", to_string(address_), why));
 }
 
 std::string Connection::no_answer(Milliseconds patience) const {

@@ -22,8 +22,8 @@ struct LilodAddress {
 /// "host:port", for messages.
 std::string to_string(const LilodAddress& address);
 
-/// What a subscriber is sent: poses and health, or the sensor's packets and nothing else.
-enum class Subscription : std::uint8_t { messages, packets };
+/// What a subscriber is sent: poses and health, or with them the sensor's packets.
+enum class Subscription : std::uint8_t { messages, with_packets };
 
 /// A conversation with one lilod on this or another host by daemon/PROTOCOL.md: shows the token it
 /// is asked for, keeps the lease, ends it when it goes. One thread. Throws std::runtime_error, one
@@ -45,11 +45,12 @@ class Connection {
   nlohmann::json ask(const nlohmann::json& request, const std::string& kind,
                      Milliseconds patience = kPatience);
 
-  /// From now on all of it comes, as long as receive() is called once a second.
+  /// From now on all of it comes, as long as receive() is called once a second. Throws when the
+  /// daemon gives us no packets.
   void subscribe(Subscription what = Subscription::messages);
   /// The next datagram that is no answer, or nothing when none came in time, a
   /// signal came or `or_readable` (a file descriptor; -1: none) had something to read. It lives
-  /// until the next call.
+  /// until the next call. Throws when the daemon gives us no packets any more.
   std::optional<std::string_view> receive(Milliseconds at_most, int or_readable = -1);
 
   /// Name and version of the daemon, as it said when the conversation began.
@@ -67,6 +68,8 @@ class Connection {
   Waited wait(Clock::time_point until, int or_readable);
   std::optional<std::string_view> take();
   [[nodiscard]] nlohmann::json understood(std::string_view datagram);
+  void await_packets();
+  [[nodiscard]] bool has_packets(const nlohmann::json& message) const;
   [[nodiscard]] std::string no_answer(Milliseconds patience) const;
 
   LilodAddress address_;
