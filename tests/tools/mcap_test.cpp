@@ -1,4 +1,5 @@
 #include "tests/daemon/child_process.hpp"
+#include "tests/tools/mcap_core.hpp"
 #include "tests/tools/temporary_folder.hpp"
 #include "tools/record/mcap_schemas.hpp"
 #include "tools/record/recording.hpp"
@@ -8,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
 namespace lilo {
@@ -29,12 +29,6 @@ std::string pose(int seq, const char* status = "tracking", const char* session =
 const std::string kHealth =
     R"({"v":"1.0","timestamp":2.5,"session":"a","health":{"status":"tracking","complaints":[]}})";
 
-/// Where @mcap/core is, or nothing.
-std::string node_modules() {
-  const char* folder = std::getenv("LILO_NPM_DIR");
-  return folder == nullptr ? LILO_NPM_DIR : folder;
-}
-
 /// What @mcap/core makes of a file.
 json read_by_mcap_core(const std::string& file) {
   const Finished run = run_to_end(
@@ -46,8 +40,7 @@ json read_by_mcap_core(const std::string& file) {
 class Mcap : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(node_modules() + "/node_modules/@mcap/core"))
-      GTEST_SKIP() << "no @mcap/core: npm install --prefix " << node_modules() << " @mcap/core";
+    if (!has_mcap_core()) GTEST_SKIP() << without_mcap_core();
   }
   [[nodiscard]] std::string path(const char* name) const { return folder_.path() + "/" + name; }
 

@@ -35,6 +35,10 @@ class Program:
         self.process.kill()
         self.process.wait()
 
+    def resident_mb(self):
+        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(re.search(r"VmRSS:\s+(\d+)", status).group(1)) / 1024
+
 
 class Lilod(Program):
     """On free ports of loopback."""
@@ -99,7 +103,3 @@ class View(Program):
     @property
     def port(self):
         return int(re.search(r":(\d+)/", self.url).group(1))
-
-    def resident_mb(self):
-        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
-        return int(re.search(r"VmRSS:\s+(\d+)", status).group(1)) / 1024

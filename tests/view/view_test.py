@@ -7,6 +7,7 @@ import argparse
 import http.client
 import json
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -227,6 +228,29 @@ class Recorded(WithPrograms):
         self.assertEqual(shown["seq"], last["seq"])
         self.assertEqual(shown["position"], [last["pose"]["position"][k] for k in "xyz"])
         shot(browser, "phone")
+
+    def test_recorded_mcap(self):
+        lilod, file = self.lilod(), self.folder / "drive.mcap"
+        lilod.ask(query="hello")
+        recorder = self.keep(Program([ARGS.bin / "lilo", "record", file, "--port", lilod.port, "--count", 40],
+                                     stdout=subprocess.DEVNULL))
+        self.keep(lilod.replay(ARGS.capture))
+        self.assertEqual(recorder.process.wait(SLOW_S), 0)
+        sent = [int(seq) for seq in re.findall(rb'"seq":(\d+),"pose":', file.read_bytes())]
+        view, browser = self.view(file), self.browser(400, 300)
+        browser.open(view.url)
+        browser.wait("window.lilo && lilo.source.view.done", SLOW_S)
+        self.assertEqual(browser.run("lilo.source.view.error || ''"), "")
+        self.assertEqual(browser.run("lilo.store.frames.map((f) => f.seq)"), sent)
+        self.assertEqual(len(sent), 40)
+
+    def test_a_recording_that_cannot_be_read_says_why(self):
+        file = self.folder / "cut.mcap"
+        file.write_bytes(b"\x89MCAP0\r\n\x05")
+        view, browser = self.view(file), self.browser(400, 300)
+        browser.open(view.url)
+        browser.wait("window.lilo && lilo.source.view.done")
+        self.assertIn("byte 8: ends early", browser.run("document.body.innerText"))
 
 
 class Access(WithPrograms):

@@ -2,6 +2,7 @@
 
 #include "core/odometry.hpp"
 #include "drivers/scan_source.hpp"
+#include "tools/record/mcap_reader.hpp"
 #include "tools/run/datagram_writer.hpp"
 #include "tools/text_file.hpp"
 
@@ -52,10 +53,29 @@ Work play_lines(const std::string& path, Recording::Take take, Recording::Tell t
   };
 }
 
+Work play_mcap(const std::string& path, Recording::Take take, Recording::Tell tell) {
+  auto reader = std::make_shared<mcap::Reader>(path);
+  return [=](const std::atomic<bool>& stop) {
+    mcap::Message message;
+    bool has_any = false;
+    for (std::size_t k = 0; !stop && reader->next(message); ++k) {
+      if (message.topic.starts_with("/lilod/")) {
+        has_any = true;
+        take(message.data);
+      }
+      if (k % (kTellEvery * kTellEvery) == 0)
+        tell({.progress = reader->progress(), .done = false, .error = {}});
+    }
+    const char* error = has_any || stop ? "" : "no topic /lilod/..., so not of lilo record";
+    tell({.progress = 1.0, .done = true, .error = error});
+  };
+}
+
 Work work_for(const std::string& path, const Config& config, Recording::Take take,
               const Recording::Tell& tell) {
-  if (std::filesystem::path(path).extension() == ".jsonl")
-    return play_lines(path, std::move(take), tell);
+  const std::filesystem::path ending = std::filesystem::path(path).extension();
+  if (ending == ".jsonl") return play_lines(path, std::move(take), tell);
+  if (ending == ".mcap") return play_mcap(path, std::move(take), tell);
   return play_scans(path, config, std::move(take), tell);
 }
 

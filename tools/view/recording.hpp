@@ -18,7 +18,7 @@ struct RecordingState {
 };
 
 /// Turns a recording into datagrams of the protocol, on a thread of its own: captures and KITTI
-/// folders by the odometry, as fast as it goes; recorded datagrams (.jsonl) as they are.
+/// folders by the odometry, as fast as it goes; recorded datagrams (.jsonl, .mcap) as they are.
 class Recording {
  public:
   using Take = std::function<void(std::string_view datagram)>;

@@ -174,7 +174,7 @@ void add_view_command(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("view", "Show a running lilod or a recording in a browser");
   auto* recording = sub->add_option(
       "RECORDING", options->recording,
-      "pcap, KITTI folder or recorded datagrams (.jsonl); default: the running lilod");
+      "pcap, KITTI folder or recorded datagrams (.jsonl, .mcap); default: the running lilod");
   sub->add_option("--host", options->host, "Computer of the lilod")
       ->capture_default_str()
       ->excludes(recording);

@@ -323,7 +323,7 @@ function begin() {
   setInterval(drawWords, PANEL_EVERY_MS);
   // For the console, and for the tests.
   window.lilo = { store, player, camera, scene, source, measure, setMode, setTheme, fit,
-    settled };
+    settled, drawNow: () => scene.draw(store, player.at, camera, options) };
 }
 
 begin();
