@@ -6,7 +6,7 @@
 namespace lilo {
 
 enum class FeatureKind : std::uint8_t {
-  ground,     ///< flat towards the next ring, below the horizon
+  ground,     ///< flat towards the next ring: the ground, and overhead a ceiling
   structure,  ///< everything that stands: walls, poles, trunks, foliage
 };
 
@@ -21,6 +21,9 @@ struct Feature {
   FeatureKind kind;
   std::uint8_t ring;
 };
+
+/// Of a ceiling, if in a room; elsewhere of a bridge, a roof or, mostly, a canopy.
+inline bool is_overhead(const Feature& f) { return f.kind == FeatureKind::ground && f.z_m >= 0.0F; }
 
 /// What the odometry looks at instead of all returns of a scan. Its memory is reused.
 struct ScanFeatures {

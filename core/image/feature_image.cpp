@@ -11,6 +11,8 @@ namespace {
 
 // Ground seen from a tilted sensor or on a hill stays below this slope, walls and trunks above.
 constexpr float kSteep = 0.84F;  // tan 40 degrees
+// A ceiling is level. It is less so to a sensor in a hand: tan 17 degrees.
+constexpr float kLevel = 0.3F;
 // Two returns belong to one surface when they are not much farther apart than the rings would be
 // on a surface of that slope.
 constexpr float kSameSurface = 3.0F;
@@ -152,6 +154,7 @@ void FeatureImage::find_edges(const ColumnView& g) {
   float* const length2_m2 = edges_.length2_m2.data() + 2;
   std::int32_t* const flat = edges_.flat.data() + 2;
   std::int32_t* const steep = edges_.steep.data() + 2;
+  std::int32_t* const level = edges_.level.data() + 2;
   const auto count = static_cast<std::size_t>(std::max(beams_.ring_count - 1, 0));
   for (std::size_t k = 0; k < count; ++k) {
     const float from_m = g.horizontal_m[k], to_m = g.horizontal_m[k + 1];
@@ -168,6 +171,9 @@ void FeatureImage::find_edges(const ColumnView& g) {
     length2_m2[k] = one_surface ? length2 : kNone_m2;
     flat[k] = static_cast<std::int32_t>(one_surface & !is_steep);
     steep[k] = static_cast<std::int32_t>(one_surface & is_steep);
+    // From below, the higher one of two rings meets a level surface nearer to the sensor.
+    const bool is_level = (dd < 0.0F) & (std::abs(dz) < kLevel * -dd);
+    level[k] = static_cast<std::int32_t>(one_surface & is_level & (g.z_m[k] > 0.0F));
   }
 }
 
@@ -187,8 +193,9 @@ void FeatureImage::add_feature(const ColumnView& g, std::size_t ring,
   const std::size_t below = ring + 1, above = ring + 2;  // steps
   const bool flat = (edges_.flat[below] | edges_.flat[above]) != 0;
   const bool steep = (edges_.steep[below] | edges_.steep[above]) != 0;
-  if (flat && steep) return;                // a kerb or the foot of a wall: neither
-  if (flat && g.z_m[ring] >= 0.0F) return;  // a roof or a canopy seen from below
+  if (flat && steep) return;  // a kerb or the foot of a wall: neither
+  const bool level = (edges_.level[below] | edges_.level[above]) != 0;
+  if (flat && g.z_m[ring] >= 0.0F && !level) return;  // a canopy seen from below
   // From the ground to the foot of a wall goes no surface.
   const bool foot_below = flat && edges_.steep[below - 1] != 0;
   const bool foot_above = flat && edges_.steep[above + 1] != 0;

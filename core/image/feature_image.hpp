@@ -69,6 +69,7 @@ class FeatureImage {
   struct RingEdges {
     std::array<float, kMaxRings + 3> length2_m2;
     std::array<std::int32_t, kMaxRings + 3> flat, steep;  ///< 1 or 0
+    std::array<std::int32_t, kMaxRings + 3> level;        ///< flat, overhead, and as a ceiling is
   };
   /// How far the sensor has turned. A column's place counts from `first_column`, in the order in
   /// which the sensor passes them.

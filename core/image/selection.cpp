@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 namespace lilo::core {
@@ -40,16 +41,16 @@ bool Selection::take(std::uint64_t voxel) {
   return true;
 }
 
-const std::vector<Feature>& Selection::choose(const std::vector<Feature>& all) {
+const std::vector<Feature>& Selection::choose(const std::vector<Feature>& all, bool with_overhead) {
   // Too small a voxel fills the goal before the turn is over, as after a scan that saw little. Too
   // large a one leaves little of what there is, as in the first scan of a narrow place.
   constexpr int kMostPasses = 8;
-  for (int pass = 0; pass < kMostPasses && !take_evenly(all); ++pass) {
+  for (int pass = 0; pass < kMostPasses && !take_evenly(all, with_overhead); ++pass) {
   }
   return chosen_;
 }
 
-bool Selection::take_evenly(const std::vector<Feature>& all) {
+bool Selection::take_evenly(const std::vector<Feature>& all, bool with_overhead) {
   std::fill(taken_.begin(), taken_.end(), 0);
   chosen_.clear();
   std::array<int, kKinds> count{}, offered{};
@@ -59,6 +60,7 @@ bool Selection::take_evenly(const std::vector<Feature>& all) {
   const std::size_t stride = golden_stride(all.size());
   for (std::size_t n = 0, at = 0; n < all.size(); ++n, at = (at + stride) % all.size()) {
     const Feature& f = all[at];
+    if (!with_overhead && is_overhead(f)) continue;
     const auto kind = static_cast<std::size_t>(f.kind);
     ++offered[kind];
     if (count[kind] >= 2 * goal_[kind]) {
@@ -90,7 +92,8 @@ float range_of(const Feature& f) {
 
 /// The range from which on every feature is kept, if nearer ones are kept in proportion to their
 /// range and `most` altogether.
-float range_kept_whole_m(const std::vector<Feature>& all, std::size_t most) {
+template <typename Counts>
+float range_kept_whole_m(const std::vector<Feature>& all, const Counts& counts, std::size_t most) {
   // Eight bins an octave: a float's exponent and the first bits of its fraction.
   constexpr std::size_t kBins = 128;
   constexpr std::uint32_t kBinBit = 20, kFirst = std::bit_cast<std::uint32_t>(0.125F) >> kBinBit;
@@ -100,13 +103,15 @@ float range_kept_whole_m(const std::vector<Feature>& all, std::size_t most) {
   };
   std::array<std::size_t, kBins> count{};
   std::array<double, kBins> sum_m{};
+  std::size_t farther = 0;
   for (const Feature& f : all) {
+    if (!counts(f)) continue;
     const float range_m = range_of(f);
     const std::size_t bin = bin_of(range_m);
+    ++farther;
     ++count[bin];
     sum_m[bin] += static_cast<double>(range_m);
   }
-  std::size_t farther = all.size();
   double nearer_m = 0.0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     farther -= count[bin];
@@ -121,15 +126,18 @@ float range_kept_whole_m(const std::vector<Feature>& all, std::size_t most) {
 }  // namespace
 
 void thin_out(const std::vector<Feature>& all, std::size_t most, Evenly evenly,
-              std::vector<Feature>& fewer) {
-  if (all.size() <= most) {
-    fewer.assign(all.begin(), all.end());
+              std::vector<Feature>& fewer, bool with_overhead) {
+  const auto counts = [&](const Feature& f) { return with_overhead || !is_overhead(f); };
+  const auto count = static_cast<std::size_t>(std::count_if(all.begin(), all.end(), counts));
+  if (count <= most) {
+    fewer.clear();
+    std::copy_if(all.begin(), all.end(), std::back_inserter(fewer), counts);
     return;
   }
   constexpr std::uint32_t kGolden = 2654435769U;  // of 2^32: rings beside each other lie apart
   const bool in_image = evenly == Evenly::in_image;
-  const float part = static_cast<float>(most) / static_cast<float>(all.size());
-  const float part_per_m = in_image ? 0.0F : 1.0F / range_kept_whole_m(all, most);
+  const float part = static_cast<float>(most) / static_cast<float>(count);
+  const float part_per_m = in_image ? 0.0F : 1.0F / range_kept_whole_m(all, counts, most);
   std::array<float, kMaxRings> owed{};  // to each ring, in parts of a feature
   for (std::size_t ring = 0; ring < owed.size(); ++ring) {
     owed[ring] = 0x1p-32F * static_cast<float>(static_cast<std::uint32_t>(ring * kGolden));
@@ -138,6 +146,7 @@ void thin_out(const std::vector<Feature>& all, std::size_t most, Evenly evenly,
   std::size_t n = 0;
   for (const Feature& f : all) {
     if (n == most) break;
+    if (!counts(f)) continue;
     // A branch on it would be predicted wrongly half of the time.
     float& parts = owed[f.ring];
     parts += in_image ? part : std::min(1.0F, range_of(f) * part_per_m);

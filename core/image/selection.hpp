@@ -18,7 +18,8 @@ class Selection {
   Selection(int ground_goal, int structure_goal);
 
   /// The chosen features, in the image's order; the result lives until the next call.
-  const std::vector<Feature>& choose(const std::vector<Feature>& all);
+  /// `with_overhead`: also of what is_overhead().
+  const std::vector<Feature>& choose(const std::vector<Feature>& all, bool with_overhead = true);
 
   /// What choose() gave last.
   [[nodiscard]] const std::vector<Feature>& chosen() const { return chosen_; }
@@ -34,7 +35,7 @@ class Selection {
   [[nodiscard]] static std::uint64_t voxel_of(const Feature& f, float per_m);
   /// False when a goal was reached twice over before the end, or not even half though there is
   /// more. Adapts the voxels in any case.
-  bool take_evenly(const std::vector<Feature>& all);
+  bool take_evenly(const std::vector<Feature>& all, bool with_overhead);
   bool take(std::uint64_t voxel);
 
   std::array<int, kKinds> goal_;
@@ -52,8 +53,9 @@ enum class Evenly {
 };
 
 /// `most` of them at most. In the image's order every second feature would be every second ring,
-/// wherever columns are filled alike: each ring is thinned out by itself.
+/// wherever columns are filled alike: each ring is thinned out by itself. `with_overhead`: also of
+/// what is_overhead().
 void thin_out(const std::vector<Feature>& all, std::size_t most, Evenly evenly,
-              std::vector<Feature>& fewer);
+              std::vector<Feature>& fewer, bool with_overhead = true);
 
 }  // namespace lilo::core

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace lilo::core {
@@ -183,11 +184,12 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
                        std::size_t finest) {
   // Far from the solution a part of the features shows the way as well as all of them.
   constexpr std::size_t kCoarseStride = 4;
-  constexpr double kNear_rad = 3e-3, kNear_m = 0.03;
+  constexpr double kNear_rad = 3e-3, kNear_m = 0.03, kLever_m = kNear_m / kNear_rad;
   constexpr double kEnough_rad = 3e-4, kEnough_m = 3e-3;
   // Weights and cells follow each step, so that the next would be about a quarter of it.
   constexpr double kFurther = 1.2;
   std::size_t stride = kCoarseStride;
+  double last_step_m = std::numeric_limits<double>::infinity();
   Solution solution = unaligned(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
@@ -205,6 +207,10 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     const double turned_rad = end.head<3>().norm(), moved_m = end.tail<3>().norm();
     solution.converged = stride == 1 && turned_rad < kEnough_rad && moved_m < kEnough_m;
     if (turned_rad < kNear_rad && moved_m < kNear_m) stride = 1;
+    // A part of the features may lead the solution round in a circle: its steps grow no shorter.
+    const double step_m = moved_m + turned_rad * kLever_m;
+    if (step_m >= last_step_m) stride = 1;
+    last_step_m = step_m;
     // The last step is always taken with all features.
     if (solution.iterations + 1 >= config_.max_iterations) stride = 1;
     if (solution.converged || solution.iterations == config_.max_iterations) {

@@ -45,7 +45,9 @@ void KeyframeMap::clear() {
 void KeyframeMap::begin(const std::vector<Feature>& features, const Trajectory& trajectory,
                         std::size_t finest_level) {
   clear();
-  hold(features, trajectory, 0, finest_level);
+  hold(features, true);
+  held_.trajectory = trajectory;
+  held_.finest_level = finest_level;
   insert_held();
   keyframes_ = 1;
 }
@@ -61,7 +63,10 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
     insert_held();
   }
   if (scan.use != MapUse::keyframe || !is_due(scan)) return false;
-  hold(scan.features, scan.solution.trajectory, scan.timing.end_ns, scan.finest_level);
+  hold(scan.features, scan.with_overhead);
+  held_.trajectory = scan.solution.trajectory;
+  held_.end_ns = scan.timing.end_ns;
+  held_.finest_level = scan.finest_level;
   // While there is little else, a scan late is too late.
   if (keyframes_ < kYoungMap) insert_held();
   ++keyframes_;
@@ -81,15 +86,12 @@ bool KeyframeMap::is_due(const AlignedScan& scan) const {
          so3_log(moved_by.rotation).norm() >= config_.keyframe_rad;
 }
 
-void KeyframeMap::hold(const std::vector<Feature>& features, const Trajectory& trajectory,
-                       std::int64_t end_ns, std::size_t finest_level) {
+void KeyframeMap::hold(const std::vector<Feature>& features, bool with_overhead) {
   // In an abrupt turn after the start, near points hold the pose. Later the near cells are full,
   // and far points hold the attitude.
   const Evenly evenly = keyframes_ < kYoungMap ? Evenly::in_image : Evenly::along_rings;
-  thin_out(features, static_cast<std::size_t>(config_.map_features), evenly, held_.features);
-  held_.trajectory = trajectory;
-  held_.end_ns = end_ns;
-  held_.finest_level = finest_level;
+  thin_out(features, static_cast<std::size_t>(config_.map_features), evenly, held_.features,
+           with_overhead);
   held_.is_waiting = true;
 }
 

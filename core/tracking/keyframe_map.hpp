@@ -28,6 +28,7 @@ struct AlignedScan {
   Pose T_odom_sensor;  ///< of its last firing
   MapUse use = MapUse::keyframe;
   std::size_t finest_level = LocalMaps::kUsual;  ///< of the map, for its surroundings
+  bool with_overhead = true;                     ///< what is_overhead() enters the map as well
 };
 
 /// The local map and how it grows: by keyframes, which enter one scan late. The end of a scan is
@@ -64,8 +65,7 @@ class KeyframeMap {
     bool is_waiting = false;
   };
   [[nodiscard]] bool is_due(const AlignedScan& scan) const;
-  void hold(const std::vector<Feature>& features, const Trajectory& trajectory, std::int64_t end_ns,
-            std::size_t finest_level);
+  void hold(const std::vector<Feature>& features, bool with_overhead);
   void insert_held();
 
   DefaultConfig config_;

@@ -80,9 +80,10 @@ void LocalOdometry::observe_noise(const ScanTiming& scan, const Solution& soluti
                          solution.data_information.inverse().diagonal());
 }
 
-void LocalOdometry::grow_map(const ScanTiming& scan, const std::vector<Feature>& features,
-                             const Solution& solution, MapUse use, std::size_t finest_level) {
-  if (map_.grow({scan, features, solution, state_.T_odom_sensor, use, finest_level})) {
+void LocalOdometry::grow_map(const Observation& scan, const std::vector<Feature>& features,
+                             const Solution& solution, MapUse use) {
+  if (map_.grow({scan.timing, features, solution, state_.T_odom_sensor, use, scan.finest_level,
+                 scan.is_narrow})) {
     uncertainty_.add_keyframe(state_, map_.keyframes());
   }
 }

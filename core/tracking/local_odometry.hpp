@@ -7,6 +7,7 @@
 #include "core/registration/solver.hpp"
 #include "core/registration/weak_directions.hpp"
 #include "core/tracking/keyframe_map.hpp"
+#include "core/tracking/observation.hpp"
 #include "core/tracking/pose_uncertainty.hpp"
 
 #include <cstddef>
@@ -61,9 +62,9 @@ class LocalOdometry {
   /// What comes next does not continue the motion observed so far.
   void interrupt_noise() { process_noise_.interrupt(); }
 
-  /// What the scan accepted last adds to the map.
-  void grow_map(const ScanTiming& scan, const std::vector<Feature>& features,
-                const Solution& solution, MapUse use, std::size_t finest_level);
+  /// What the scan accepted last adds to the map, of all of its features.
+  void grow_map(const Observation& scan, const std::vector<Feature>& features,
+                const Solution& solution, MapUse use);
 
   /// Gives the map up and begins another where the sensor is now. Returns where that is.
   Pose begin_map();

@@ -7,8 +7,8 @@
 namespace lilo::core {
 namespace {
 
-/// Half cells where more than half of the structure is near, as in rooms.
-std::size_t finest_level(const std::vector<Feature>& features) {
+/// More than half of the structure is near, as in rooms.
+bool is_narrow(const std::vector<Feature>& features) {
   constexpr float kNarrow_m = 5.0F;
   int near = 0, all = 0;
   for (const Feature& f : features) {
@@ -16,7 +16,7 @@ std::size_t finest_level(const std::vector<Feature>& features) {
     ++all;
     near += static_cast<int>(f.x_m * f.x_m + f.y_m * f.y_m + f.z_m * f.z_m < kNarrow_m * kNarrow_m);
   }
-  return 2 * near > all ? LocalMaps::kNarrow : LocalMaps::kUsual;
+  return 2 * near > all;
 }
 
 }  // namespace
@@ -25,10 +25,12 @@ Observation observe(const Scan& scan, const std::vector<Feature>& selected) {
   const auto structure = std::count_if(selected.begin(), selected.end(), [](const Feature& f) {
     return f.kind == FeatureKind::structure;
   });
+  const bool narrow = is_narrow(selected);
   return {.timing = {scan.start_ns, scan.end_ns, scan.motion_compensated},
           .features = &selected,
           .structure = static_cast<double>(structure),
-          .finest_level = finest_level(selected),
+          .is_narrow = narrow,
+          .finest_level = narrow ? LocalMaps::kNarrow : LocalMaps::kUsual,
           .is_complete = scan.complete};
 }
 

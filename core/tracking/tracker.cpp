@@ -28,7 +28,9 @@ Tracker::Tracker(const OdometryConfig& config)
       motion_check_(selection_.most()) {}
 
 Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, StageHook hook) {
-  scan_ = observe(scan, selection_.choose(features));
+  // In rooms little of the floor is seen: ceilings hold height and attitude as well. Elsewhere what
+  // is overhead are canopies.
+  scan_ = observe(scan, selection_.choose(features, scan_.is_narrow));
   // Half cells may inform along a direction that is weak with whole ones: they tell the lamps of a
   // tunnel from its lining.
   if (alignment_.weak.count > 0) scan_.finest_level = LocalMaps::kNarrow;
@@ -57,7 +59,7 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
   const MapUse use = is_lost                   ? MapUse::none
                      : alignment_.is_explained ? MapUse::keyframe
                                                : MapUse::end_only;
-  local_.grow_map(scan_.timing, features, alignment_.solution, use, scan_.finest_level);
+  local_.grow_map(scan_, features, alignment_.solution, use);
   hook(Stage::update_map);
 }
 

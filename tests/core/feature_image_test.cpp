@@ -147,7 +147,7 @@ TEST(FeatureImage, MakesNoRampOfFloorAndWall) {
   core::FeatureImage image(1024, {});
   int ground = 0;
   for (const Feature& f : image.build(test::still_scan_of(hall, k16, {}))) {
-    if (f.kind != FeatureKind::ground) continue;
+    if (f.kind != FeatureKind::ground || is_overhead(f)) continue;
     const Eigen::Vector3d p = key_of(f), reach = reach_of(f);
     EXPECT_NEAR(p.z(), -0.8, 1e-3) << int{f.ring};
     const bool along_floor = std::abs(reach.z()) < 1e-3;
@@ -175,6 +175,33 @@ TEST(FeatureImage, TakesNothingAboveTheHorizonFromTheColumnBeside) {
     EXPECT_EQ(f.kind, FeatureKind::structure);
     EXPECT_NEAR(f.dz_m, 20.0 * 2.0 * std::numbers::pi / 180.0, 1e-3);  // nobody knows
   }
+}
+
+// A ceiling 1.2 m above the sensor in front of it, and behind it twigs: every higher ring meets
+// them a metre farther away, as nothing level overhead can be met.
+TEST(FeatureImage, TakesCeilingsAndNoCanopyOverhead) {
+  constexpr int kColumns = 360;
+  constexpr double kHeight_m = 1.2;
+  Scan scan;
+  scan.beams = k16;
+  scan.end_ns = 100'000'000;
+  for (int column = 0; column < kColumns; ++column) {
+    const double azimuth_rad = azimuth_of(column, kColumns);
+    for (std::uint8_t ring = 11; ring < 16; ++ring) {
+      const double up = std::tan(static_cast<double>(k16.elevation_rad[ring]));
+      const double flat_m = std::abs(azimuth_rad) < 1.5 ? kHeight_m / up : 8.0 + (ring - 11);
+      scan.returns.push_back(return_at(k16, ring, azimuth_rad, flat_m));
+    }
+  }
+  core::FeatureImage image(kColumns, {});
+  int overhead = 0;
+  for (const Feature& f : image.build(scan)) {
+    if (!is_overhead(f)) continue;
+    ++overhead;
+    EXPECT_NEAR(f.z_m, kHeight_m, 1e-3);
+    EXPECT_NEAR(f.dz_m, 0.0, 1e-3);
+  }
+  EXPECT_GT(overhead, 400);
 }
 
 // Ground that the upper ring sees in one direction only. However late that return comes, the

@@ -25,7 +25,8 @@ class Start {
       local.accept(scan.timing(), solution);
       initializer.set_track(solution.trajectory.at(0.0), local.state().T_odom_sensor);
     }
-    local.grow_map(scan.timing(), scan.features(), solution, MapUse::keyframe, LocalMaps::kUsual);
+    local.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kUsual}, scan.features(),
+                   solution, MapUse::keyframe);
     return false;
   }
   /// Scans until the motion is known; 10: never.

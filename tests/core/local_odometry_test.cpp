@@ -103,7 +103,8 @@ TEST_F(LocalOdometryTest, FollowsADriveThroughAYard) {
     const test::ObservedScan scan = in_yard(kSpeed_mps, k);
     const Solution solution = local_.align(scan.features(), local_.predict(scan.timing()));
     local_.accept(scan.timing(), solution);
-    local_.grow_map(scan.timing(), scan.features(), solution, MapUse::keyframe, LocalMaps::kUsual);
+    local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kUsual}, scan.features(),
+                    solution, MapUse::keyframe);
     const Eigen::Vector3d truth_m(kSpeed_mps * kSpan_s * static_cast<double>(k), 0.0, 0.0);
     EXPECT_NEAR((local_.state().T_odom_sensor.translation_m - truth_m).norm(), 0.0, 0.02) << k;
   }
@@ -180,7 +181,8 @@ TEST_F(LocalOdometryTest, ASensorThatIsTakenToStandIsFollowedWhenItSetsOff) {
         scan.features(), local_.predict(scan.timing()), LocalMaps::kUsual);
     local_.accept(scan.timing(), solution);
     local_.observe_standing();
-    local_.grow_map(scan.timing(), scan.features(), solution, MapUse::keyframe, LocalMaps::kUsual);
+    local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kUsual}, scan.features(),
+                    solution, MapUse::keyframe);
     const Eigen::Vector3d error_m =
         local_.state().T_odom_sensor.translation_m - path(1.0).translation_m;
     EXPECT_LT(error_m.norm(), 0.02) << k;

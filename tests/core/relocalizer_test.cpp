@@ -26,8 +26,8 @@ class RelocalizerTest : public testing::Test {
         last_.fit.learn(solution, scan.observation().structure);
       }
       last_.end_ns = scan.timing().end_ns;
-      local_.grow_map(scan.timing(), scan.features(), solution, MapUse::keyframe,
-                      LocalMaps::kUsual);
+      local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kUsual}, scan.features(),
+                      solution, MapUse::keyframe);
     }
   }
   /// Where the sensor is found that was carried there within a second; none: it is not.

@@ -52,6 +52,18 @@ TEST(ThinOut, LeavesNoRingAndNoDirectionOut) {
   }
 }
 
+TEST(ThinOut, LeavesOutWhatIsOverhead) {
+  std::vector<Feature> all = filled_columns(1000, 8);
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].z_m = k % 3 == 0 ? 2.0F : -1.5F;
+  const std::size_t below = all.size() - (all.size() + 2) / 3;
+  std::vector<Feature> fewer;
+  for (const std::size_t most : {below / 3, 2 * below}) {
+    thin_out(all, most, Evenly::along_rings, fewer, false);
+    EXPECT_NEAR(static_cast<double>(fewer.size()), static_cast<double>(std::min(most, below)), 8.0);
+    EXPECT_TRUE(std::none_of(fewer.begin(), fewer.end(), is_overhead));
+  }
+}
+
 TEST(ThinOut, NeverTakesMoreThanItMay) {
   std::vector<Feature> fewer;
   for (const std::size_t most : {1UL, 7UL, 999UL, 6000UL}) {
@@ -121,6 +133,17 @@ TEST(Selection, FavoursNoSideOfAVoxel) {
   }
   EXPECT_NEAR(static_cast<double>(chosen.size()), kLength_m, 0.05 * kLength_m);
   EXPECT_LT(std::abs(from_middle_m) / static_cast<double>(chosen.size()), 0.05);
+}
+
+TEST(Selection, LeavesOutWhatIsOverhead) {
+  std::vector<Feature> all(40);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k].x_m = static_cast<float>(2 * k);
+    all[k].z_m = k % 2 == 0 ? 1.0F : -1.0F;
+  }
+  Selection selection(900, 1100);
+  EXPECT_EQ(selection.choose(all, false).size(), all.size() / 2);
+  EXPECT_EQ(selection.choose(all, true).size(), all.size());
 }
 
 TEST(Selection, TakesWhatThereIs) {

@@ -59,6 +59,31 @@ TEST(DefaultProfile, FollowsADriveWithSixteenBeams) {
   EXPECT_EQ(result.estimates.back().status, TrackingStatus::tracking);
 }
 
+// By hand through a room of 8 x 6 m whose floor 16 beams do not reach: only the ceiling, 1.1 m
+// above, tells the height.
+TEST(DefaultProfile, TheCeilingHoldsTheHeightInARoom) {
+  test::Scene room;
+  room.planes = {{{0.0, 0.0, -1.0}, -1.1}, {{0.0, 0.0, 1.0}, -1.4},  {{-1.0, 0.0, 0.0}, -4.0},
+                 {{1.0, 0.0, 0.0}, -4.0},  {{0.0, -1.0, 0.0}, -3.0}, {{0.0, 1.0, 0.0}, -3.0}};
+  const auto carried = [](double t_s) {
+    const double step = std::min(t_s, 1.0) * std::sin(5.0 * t_s);
+    return Pose{so3_exp({0.05 * step, 0.04 * step, 0.1 * t_s}), {0.2 * t_s, 0.0, 0.08 * step}};
+  };
+  Odometry odometry{OdometryConfig{}};
+  std::mt19937 rng(3);
+  double worst_m = 0.0;
+  for (std::uint64_t k = 0; k < 40; ++k) {
+    const double at_s = 0.1 * static_cast<double>(k);
+    Scan scan = test::scan_of(
+        room, k16, 900, [&](double s) { return carried(at_s + 0.1 * s); }, k);
+    test::add_range_noise(scan, 0.01F, rng);
+    const Pose found = carried(0.1) * odometry.process(scan).T_odom_sensor;
+    const Pose truth = carried(at_s + 0.1);
+    worst_m = std::max(worst_m, std::abs(found.translation_m.z() - truth.translation_m.z()));
+  }
+  EXPECT_LT(worst_m, 0.03);
+}
+
 TEST(DefaultProfile, CountsWhatAFullMapHasNoRoomFor) {
   EXPECT_EQ(run(k16, 6.0, 0.0, 3).estimates.back().map_refused_count, 0U);
   OdometryConfig config;
