@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <algorithm>
 #include <string>
 
 namespace lilo {
@@ -48,7 +48,8 @@ TEST(PacketMessage, IsReadAsItWasWritten) {
     EXPECT_EQ(read->packet.source_port, packet.source_port);
     EXPECT_EQ(read->packet.destination_port, packet.destination_port);
     ASSERT_EQ(read->packet.payload.size(), size);
-    if (size > 0) EXPECT_EQ(std::memcmp(read->packet.payload.data(), payload.data(), size), 0);
+    EXPECT_TRUE(std::equal(payload.begin(), payload.end(), read->packet.payload.begin(),
+                           [](char a, auto b) { return a == static_cast<char>(b); }));
   }
 }
 
