@@ -1,5 +1,7 @@
 #include "tools/record/mcap_reader.hpp"
 
+#include "tools/text_file.hpp"
+
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -48,12 +50,10 @@ class Fields {
 
 }  // namespace
 
-Reader::Reader(std::string path) : path_(std::move(path)), file_(path_, std::ios::binary) {
+Reader::Reader(std::string path) : path_(std::move(path)), file_(open_text(path_)) {
   std::error_code error;
   size_ = std::filesystem::file_size(path_, error);
-  if (!file_ || error)
-    throw std::runtime_error(
-        fmt::format("{}: cannot be read: {}", path_, error ? error.message() : "no permission"));
+  if (error) throw std::runtime_error(fmt::format("{}: cannot read: {}", path_, error.message()));
   if (size_ < kMagic.size()) fail("no MCAP file");
   read(head_, kMagic.size());
   if (head_ != kMagic) fail("no MCAP file");
