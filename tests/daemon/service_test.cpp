@@ -188,7 +188,7 @@ TEST(Clock, AStepOfAnHourBendsNothing) {
     const json& pose = poses[k]["pose"];
     EXPECT_NE(pose["status"], "lost");
     EXPECT_LT(std::abs(pose["position"]["x"].get<double>()), 0.1) << "it stands";
-    EXPECT_LT(pose["latency_ms"], took.count() * 1e3);
+    EXPECT_LT(pose["latency_ms"], 1000.0);
   }
   EXPECT_EQ(health["health"]["clock_steps"], 1);
   EXPECT_NE(health["health"]["complaints"].dump().find("the computer's clock was set"),
