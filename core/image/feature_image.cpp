@@ -11,7 +11,7 @@ namespace {
 
 // Ground seen from a tilted sensor or on a hill stays below this slope, walls and trunks above.
 constexpr float kSteep = 0.84F;  // tan 40 degrees
-// A ceiling is level. It is less so to a sensor in a hand: tan 17 degrees.
+// The slope of a ceiling stays below this, however a hand tilts the sensor: tan 17 degrees.
 constexpr float kLevel = 0.3F;
 // Two returns belong to one surface when they are not much farther apart than the rings would be
 // on a surface of that slope.

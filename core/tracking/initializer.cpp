@@ -162,7 +162,7 @@ void Initializer::replay(Start start, LocalOdometry& local) {
     local.accept(scans_[k].timing, solution);
     note_track(k, solution.trajectory.at(0.0), solution.trajectory.end());
     const Observation scan{.timing = scans_[k].timing,
-                           .is_narrow = true,  // what is overhead and not of a room is gone
+                           .is_narrow = true,  // outside rooms, for_map has nothing overhead
                            .finest_level = scans_[k].finest_level};
     local.grow_map(scan, scans_[k].for_map, solution, MapUse::keyframe);
   }
