@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Poses from lilod, in one header: C++17, POSIX sockets, nothing else. lilo-protocol(7).
+// Poses from lilod, in one header: C++17, POSIX sockets, nothing else. lilod-protocol(7).
 //
 //   lilo::Client client;                      // 127.0.0.1:9871
 //   lilo::ClientPose pose;

@@ -1,4 +1,4 @@
-"""Poses from lilod, in one file without dependencies. The protocol is lilo-protocol(7).
+"""Poses from lilod, in one file without dependencies. The protocol is lilod-protocol(7).
 
     from lilo_client import LiloClient
     for pose in LiloClient().poses():

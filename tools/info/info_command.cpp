@@ -34,7 +34,7 @@ void run_info(const InfoOptions& options) {
   if (!info.failure.empty()) throw std::runtime_error(info.failure);
   if (info.driver_counts.data_packets == 0 && info.scans == 0) {
     throw std::runtime_error(
-        fmt::format("{}: expected packets of a VLP-16 or HDL-64E, found none", options.input));
+        fmt::format("{}: expected packets of a rotating Velodyne, found none", options.input));
   }
 }
 

@@ -45,7 +45,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON) # Depends: what is linked, by dpkg-shlibd
 set(CPACK_DEBIAN_LILOD_PACKAGE_NAME lilod)
 set(CPACK_DEBIAN_LILOD_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_LILOD_DESCRIPTION "LiDAR odometry daemon for Velodyne sensors
- Listens to a Velodyne VLP-16 or HDL-64E on its Ethernet port and sends where
+ Listens to a rotating Velodyne LiDAR on its Ethernet port and sends where
  the sensor is, in real time, as JSON datagrams over UDP. Needs neither ROS nor
  a GPU nor an IMU.")
 set(CPACK_DEBIAN_LILOD_PACKAGE_SUGGESTS lilo-tools)
