@@ -14,7 +14,6 @@ constexpr float kFewPoints_m = 0.1F;  // 1 sigma of what one point says of the s
 // A direction informs if its spread (1 sigma) stays under this part of the window's width; an even
 // filling has 0.29.
 constexpr float kThin = 0.065F;
-constexpr std::uint32_t kYoungCell = 4;  // keyframes
 constexpr std::size_t kSweepShare = 64;
 
 }  // namespace
@@ -114,7 +113,7 @@ Moments CellMap::moments_around(const CellIndex& i) const {
 
 void CellMap::fit(Cell& cell) const {
   const std::uint32_t age = keyframe_ - cell.born;
-  cell.refit_at = keyframe_ + (age < kYoungCell ? 1 : std::max(6U, age / 2));
+  cell.refit_at = keyframe_ + std::max(1U, age / 2);
   cell.information.setZero();
   const Moments sums = moments_around(cell.index);
   const float count = count_of(sums);

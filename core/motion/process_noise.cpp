@@ -1,5 +1,7 @@
 #include "core/motion/process_noise.hpp"
 
+#include "core/motion/motion_state.hpp"
+
 namespace lilo::core {
 namespace {
 
@@ -7,7 +9,7 @@ constexpr double kNewest = 0.1;  // weight of a scan in the running mean: about 
 // What shakes faster than the scans come cancels in part between the middles of two. From 4 to 16
 // the errors hardly change.
 constexpr double kBetweenScans = 8.0;
-constexpr double kShortest_s = 0.01, kLongest_s = 0.5;  // between two scans that follow each other
+constexpr double kShortest_s = 0.01;  // from scan to scan
 
 }  // namespace
 
@@ -16,7 +18,7 @@ void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns, const Ve
   const Pose from = T_middle_;
   T_middle_ = T_middle;
   stamp_ns_ = stamp_ns;
-  if (observed_ == 0 || interval_s < kShortest_s || interval_s > kLongest_s) {
+  if (observed_ == 0 || interval_s < kShortest_s || interval_s > kShortGap_s) {
     observed_ = 1;
     return;
   }

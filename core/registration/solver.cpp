@@ -12,8 +12,9 @@ namespace lilo::core {
 namespace {
 
 // Far from the solution residuals are larger than noise and what moves: a wide kernel first, then
-// the tight one (graduated non-convexity; Yang et al., RA-L 2020).
-constexpr float kCoarseKernels = 4.0F;
+// the tight one (graduated non-convexity; Yang et al., RA-L 2020). And every fourth feature shows
+// the way as well as all of them.
+constexpr std::size_t kCoarse = 4;
 
 /// Information of the last knot when the others are not asked: the Schur complement.
 KnotInformation marginal_of_last(const NormalMatrix& H) {
@@ -83,7 +84,7 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   Sums sums;
   solution.looked_up = solution.matched = 0;
   const float data_weight = config_.data_weight * static_cast<float>(stride);
-  const float kernel_scale = stride > 1 ? kCoarseKernels : 1.0F;
+  const float kernel_scale = static_cast<float>(stride);
   for (std::size_t k = 0, n = 0; k < features.size(); k += n * stride) {
     n = look_up(features, k, stride);
     solution.looked_up += static_cast<int>(n);
@@ -182,13 +183,10 @@ Solution Solver::unaligned(const Prior& prior) const {
 
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
                        std::size_t finest) {
-  // Far from the solution a part of the features shows the way as well as all of them.
-  constexpr std::size_t kCoarseStride = 4;
-  constexpr double kNear_rad = 3e-3, kNear_m = 0.03, kLever_m = kNear_m / kNear_rad;
-  constexpr double kEnough_rad = 3e-4, kEnough_m = 3e-3;
+  constexpr double kNear_m = 0.03, kEnough_m = 3e-3;
   // Weights and cells follow each step, so that the next would be about a quarter of it.
   constexpr double kFurther = 1.2;
-  std::size_t stride = kCoarseStride;
+  std::size_t stride = kCoarse;
   double last_step_m = std::numeric_limits<double>::infinity();
   Solution solution = unaligned(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
@@ -204,12 +202,10 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     solution.trajectory.knots += (stride == 1 ? kFurther : 1.0) * step;
     ++solution.iterations;
     const Vector6d end = step.segment<6>(n - kKnotSize);
-    const double turned_rad = end.head<3>().norm(), moved_m = end.tail<3>().norm();
-    solution.converged = stride == 1 && turned_rad < kEnough_rad && moved_m < kEnough_m;
-    if (turned_rad < kNear_rad && moved_m < kNear_m) stride = 1;
+    const double step_m = largest_m(end.head<3>(), end.tail<3>());
+    solution.converged = stride == 1 && step_m < kEnough_m;
     // A part of the features may lead the solution round in a circle: its steps grow no shorter.
-    const double step_m = moved_m + turned_rad * kLever_m;
-    if (step_m >= last_step_m) stride = 1;
+    if (step_m < kNear_m || step_m >= last_step_m) stride = 1;
     last_step_m = step_m;
     // The last step is always taken with all features.
     if (solution.iterations + 1 >= config_.max_iterations) stride = 1;

@@ -31,14 +31,13 @@ class StructureFit {
 };
 
 /// Bounds of StructureFit::relative().
-inline constexpr double kDoubtfulFit = 0.55;  ///< below, a better alignment may have been missed
-inline constexpr double kHalfFit = 0.5;       ///< needed where the solver did not converge
-inline constexpr double kChanceFit = 0.25;    ///< what fits anywhere
+inline constexpr double kDoubtfulFit = 0.5;  ///< below, a better alignment may have been missed
+inline constexpr double kChanceFit = 0.25;   ///< what fits anywhere
 
 /// Whether an alignment may be right: one that went astray lays hardly any structure on the map,
 /// and mostly does not converge. What fits ever less, and well, is another kind of place.
 inline bool is_explained(const Solution& solution, double relative_fit) {
-  return relative_fit > (solution.converged ? kChanceFit : kHalfFit);
+  return relative_fit > (solution.converged ? kChanceFit : kDoubtfulFit);
 }
 
 }  // namespace lilo::core

@@ -1,7 +1,5 @@
 #include "core/search/displacement_search.hpp"
 
-#include "core/search/search_constants.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -20,9 +18,10 @@ double angle_between(double a_rad, double b_rad) {
 
 /// Whether alignments from both would come to the same place.
 bool are_alike(const Displacement& a, const Displacement& b) {
+  constexpr double kSame_rad = search::kSamePlace_m / kLever_m;
   return (a.along_m - b.along_m).norm() < search::kSamePlace_m &&
-         angle_between(a.yaw_rad, b.yaw_rad) < search::kSamePlace_rad &&
-         angle_between(a.begin_yaw_rad, b.begin_yaw_rad) < search::kSamePlace_rad;
+         angle_between(a.yaw_rad, b.yaw_rad) < kSame_rad &&
+         angle_between(a.begin_yaw_rad, b.begin_yaw_rad) < kSame_rad;
 }
 
 }  // namespace
@@ -46,7 +45,7 @@ void DisplacementSearch::set_map(const CellMap& structure, const Eigen::Vector3d
   structure.for_each_mean([&](const Eigen::Vector3d& mean_m) {
     const Eigen::Vector2d from_center_m = mean_m.head<2>() - center_m_;
     map_.add(from_center_m, search::kMapAround);
-    thick_map_.add(from_center_m, search::kCoarseMapAround);
+    thick_map_.add(from_center_m, search::kCoarse * search::kMapAround);
   });
 }
 

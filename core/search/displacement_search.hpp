@@ -1,8 +1,10 @@
 #pragma once
 
 #include "core/map/cell_map.hpp"
+#include "core/motion/motion_state.hpp"
 #include "core/motion/trajectory.hpp"
 #include "core/search/hypothesis.hpp"
+#include "core/search/search_constants.hpp"
 #include "core/search/top_down_grid.hpp"
 
 #include <Eigen/Core>
@@ -36,7 +38,9 @@ struct SearchRadius {
 class DisplacementSearch {
  public:
   static constexpr std::size_t kMostFound = 3;
-  static constexpr SearchRadius kFarthest{12.5, std::numbers::pi, 0.0};
+  /// Any turn, and as far as a vehicle may depart from its prediction in the longest gap.
+  static constexpr SearchRadius kFarthest{
+      0.5 * search::kAcceleration_mps2 * kLongestGap_s * kLongestGap_s, std::numbers::pi, 0.0};
 
   /// `most_features`: of one scan.
   explicit DisplacementSearch(std::size_t most_features);

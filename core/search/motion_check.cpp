@@ -1,7 +1,5 @@
 #include "core/search/motion_check.hpp"
 
-#include "core/search/search_constants.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -3,6 +3,7 @@
 #include "core/motion/scan_timing.hpp"
 #include "core/pose.hpp"
 #include "core/search/hypothesis.hpp"
+#include "core/search/search_constants.hpp"
 #include "core/search/top_down_grid.hpp"
 
 #include <array>
@@ -35,7 +36,7 @@ class MotionCheck {
   bool is_refuted(const Eigen::Vector2d& axis);
 
  private:
-  static constexpr std::size_t kScans = 6;
+  static constexpr std::size_t kScans = search::kScans;
   struct Scan {
     TopDownPoints points;
     Eigen::Vector2d begin_m, end_m;

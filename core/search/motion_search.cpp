@@ -1,7 +1,5 @@
 #include "core/search/motion_search.hpp"
 
-#include "core/search/search_constants.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,9 +17,9 @@ Twist changed(const Twist& twist, const Displacement& by) {
 
 }  // namespace
 
-bool differ(const Twist& a, const Twist& b, double mps, double radps) {
+bool differ(const Twist& a, const Twist& b, double mps) {
   return (a.linear_mps - b.linear_mps).norm() > mps ||
-         (a.angular_radps - b.angular_radps).norm() > radps;
+         (a.angular_radps - b.angular_radps).norm() > search::kYawPerSpeed_radpm * mps;
 }
 
 MotionSearch::MotionSearch(std::size_t most_features) : grid_(most_features) {
@@ -102,7 +100,7 @@ void MotionSearch::try_all() {
   hypotheses_.clear();
   hypotheses_.push_back({{}, score({}, Subsample::quarter)});
   for (int step = -search::kYawRates; step <= search::kYawRates; ++step) {
-    Displacement by{.yaw_rad = search::kStep_radps * step};
+    Displacement by{.yaw_rad = search::kYawPerSpeed_radpm * search::kStep_mps * step};
     turn(changed({}, by).angular_radps, Subsample::quarter);
     const auto try_turned = [&] {
       hypotheses_.push_back({by, score_turned(changed({}, by), Subsample::quarter)});
@@ -110,7 +108,7 @@ void MotionSearch::try_all() {
     if (step != 0) try_turned();
     for (int speed = 1; speed <= search::kSpeeds; ++speed) {
       const double speed_mps = search::kStep_mps * speed;
-      if (speed_mps * std::abs(by.yaw_rad) > search::kMostSideways_mps2) break;
+      if (speed_mps * std::abs(by.yaw_rad) > search::kAcceleration_mps2) break;
       for (int heading = 0; heading < search::kHeadings; ++heading) {
         const double heading_rad = 2.0 * std::numbers::pi * heading / search::kHeadings;
         by.along_m = {speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad)};
@@ -141,8 +139,7 @@ MotionSearch::Result MotionSearch::find() {
   Result result{changed({}, best.by)};
   result.is_unambiguous =
       std::none_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& other) {
-        return differ(changed({}, other.by), result.twist, search::kSameMotion_mps,
-                      search::kSameMotion_radps) &&
+        return differ(changed({}, other.by), result.twist, search::kSameMotion_mps) &&
                !is_significant(best.score, other.score, search::kClearly);
       });
   result.moves = is_significant(best.score, stationary, search::kClearly);
@@ -153,7 +150,9 @@ MotionSearch::Result MotionSearch::find() {
 Twist MotionSearch::refine(const Twist& about, Subsample subsample) {
   Twist best = about;
   int best_score = score(about, subsample);
-  for (const double step : search::kRefinements_mps) {
+  double step = search::kStep_mps;
+  for (int k = 0; k < search::kRefinements; ++k) {
+    step *= 0.5;
     const Twist middle = best;
     for (int yaw = -1; yaw <= 1; ++yaw) {
       Displacement by{.yaw_rad = search::kYawPerSpeed_radpm * step * yaw};

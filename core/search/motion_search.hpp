@@ -3,6 +3,7 @@
 #include "core/motion/scan_timing.hpp"
 #include "core/motion/trajectory.hpp"
 #include "core/search/hypothesis.hpp"
+#include "core/search/search_constants.hpp"
 #include "core/search/top_down_grid.hpp"
 
 #include <array>
@@ -20,7 +21,7 @@ namespace lilo::core {
 /// Not thread-safe; no allocation after construction.
 class MotionSearch {
  public:
-  static constexpr std::size_t kMostScans = 6;
+  static constexpr std::size_t kMostScans = search::kScans;
 
   /// What was found. `is_unambiguous`: no other motion fits nearly as well.
   struct Result {
@@ -70,7 +71,7 @@ class MotionSearch {
   std::vector<Hypothesis> hypotheses_;
 };
 
-/// Whether two motions are farther apart than this.
-bool differ(const Twist& a, const Twist& b, double mps, double radps);
+/// Whether two motions are farther apart than this, or their yaw rates than what moves as far.
+bool differ(const Twist& a, const Twist& b, double mps);
 
 }  // namespace lilo::core

@@ -8,14 +8,13 @@
 namespace lilo::core {
 namespace {
 
-// What is believed of a velocity that was searched, 1 sigma: of a robot that is switched on
-// standing, of one that moves, and of a motion near the one tracked.
-constexpr double kStationary_mps = 0.5, kMoving_mps = 1.0, kTracked_mps = 0.25;
+// What is believed of a velocity near another, 1 sigma: near rest or the one tracked. A velocity
+// that was searched is known to a step of the search.
+constexpr double kNear_mps = 0.5;
 
 /// Whether a motion is not the one tracked.
 bool is_elsewhere(const Twist& twist, const Twist& tracked) {
-  constexpr double kApart_mps = 0.5, kApart_radps = 0.1;
-  return differ(twist, tracked, kApart_mps, kApart_radps);
+  return differ(twist, tracked, kNear_mps);
 }
 
 }  // namespace
@@ -92,7 +91,7 @@ void Initializer::add_velocity_prior(const Start& start, Prior& prior) {
 Initializer::Start Initializer::search() {
   const MotionSearch::Result found = search_.find();
   is_unambiguous_ = found.is_unambiguous;
-  return {found.twist, found.twist.linear_mps, found.moves ? kMoving_mps : kStationary_mps,
+  return {found.twist, found.twist.linear_mps, found.moves ? search::kStep_mps : kNear_mps,
           found.moves};
 }
 
@@ -175,7 +174,7 @@ Initializer::Start Initializer::best_start(const Twist& tracked, bool was_lost) 
   // What is elsewhere with all points is, but for chance, with a quarter of them too.
   Twist twist = search_.refine(tracked, Subsample::quarter);
   if (is_elsewhere(twist, tracked)) twist = search_.refine(tracked, Subsample::all);
-  return {twist, twist.linear_mps, kTracked_mps, true};
+  return {twist, twist.linear_mps, kNear_mps, true};
 }
 
 /// A sensor that was taken to stand may have crept, where a step of a scan is less than the scans
@@ -185,7 +184,7 @@ bool Initializer::recheck_stationary(LocalOdometry& local) {
   if (count_ < kEnough) return false;
   const Twist tracked = tracked_twist();
   if (is_elsewhere(assumed_, tracked))
-    replay({tracked, tracked.linear_mps, kTracked_mps, true}, local);
+    replay({tracked, tracked.linear_mps, kNear_mps, true}, local);
   return true;
 }
 

@@ -34,7 +34,7 @@ LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_featu
 
 Solution LocalOdometry::align_moving(const std::vector<Feature>& features, const Prior& prior,
                                      std::size_t finest_level) {
-  constexpr double kExceptional = 9.0;  // squared sigmas of the process noise
+  constexpr double kExceptional = search::kBeyondDoubt * search::kBeyondDoubt;
   Solution found = align(features, prior, finest_level);
   if (normalised_innovation(prior, found.trajectory.knots).maxCoeff() < kExceptional) return found;
   Prior usual_prior = prior;

@@ -52,6 +52,7 @@ class LocalOdometry {
 
   /// Learns from the motion just accepted whether the sensor stands.
   void observe_standing() { standing_.observe(state_.T_odom_sensor, state_.twist); }
+  [[nodiscard]] bool is_standing() const { return standing_.is_likely(); }
   /// It is taken to stand where it is.
   void assume_standing() { standing_.begin(state_.T_odom_sensor); }
   /// Finds what a scan that was accepted told too little of: there the motion is dead reckoned, and

@@ -11,22 +11,14 @@
 namespace lilo::core {
 namespace {
 
-// What a vehicle may change of its motion unseen.
-constexpr double kAcceleration_mps2 = 4.0, kTurn_radps = 1.0;
 // How far a turn within a scan may go; and where the last scan was doubtful as well, so that the
 // sensor may have gone astray before it.
 constexpr SearchRadius kSudden{0.0, 0.8, 0.0}, kSuddenBefore{0.0, 1.2, 0.4};
 // How well a place is known that was searched, 1 sigma.
-constexpr double kPlace_m = 0.5, kTurned_rad = 0.05;
-// Alignments nearer to each other came to the same place.
-constexpr double kSame_m = 1.0, kSame_rad = 0.1;
+constexpr double kPlace_m = 0.5, kTurned_rad = kPlace_m / kLever_m;
 constexpr double kMinGround = 50.0;  // sum of robust weights; structure leaves height and tilt open
 
 double inverse_square(double sigma) { return 1.0 / (sigma * sigma); }
-
-bool is_within(const Pose& T, double along_m, double turned_rad) {
-  return T.translation_m.norm() < along_m && so3_log(T.rotation).norm() < turned_rad;
-}
 
 bool fits_less(const Solution& a, const Solution& b) {
   return a.structure_inliers < b.structure_inliers;
@@ -47,7 +39,6 @@ Prior prior_at(const Pose& T_end, Prior prior) {
 
 /// Of a scan that began where it was predicted to, and ended displaced.
 Prior prior_turned(const Displacement& by, bool may_begin_elsewhere, Prior prior) {
-  constexpr double kRate_radps = 1.0, kSpeed_mps = 1.0;  // 1 sigma
   const Pose T_end = displaced(predicted_end(prior), by);
   prior.T_begin = displaced(prior.T_begin, {by.along_m, by.begin_yaw_rad, by.begin_yaw_rad});
   prior.twist = twist_between(prior.T_begin, T_end, prior.span_s);
@@ -58,18 +49,17 @@ Prior prior_turned(const Displacement& by, bool may_begin_elsewhere, Prior prior
   }
   prior.begin_information.setZero();
   prior.begin_information.topLeftCorner<6, 6>() = of_pose.inverse();
-  prior.begin_information.diagonal().segment<3>(6).setConstant(inverse_square(kRate_radps));
-  prior.begin_information.diagonal().tail<3>().setConstant(inverse_square(kSpeed_mps));
+  prior.begin_information.diagonal().segment<3>(6).setConstant(inverse_square(search::kTurn_radps));
+  prior.begin_information.diagonal().tail<3>().setConstant(inverse_square(search::kStep_mps));
   return prior;
 }
 
 }  // namespace
 
 bool is_in_place(const Solution& found, const Prior& prior, double relative_fit) {
-  constexpr double kExactly_m = 0.2, kExactly_rad = 0.02, kAsEver = 0.8;
+  constexpr double kExactly_m = 0.2;
   const Pose T_end = predicted_end(prior);
-  return is_within(T_end.inverse() * found.trajectory.end(), kExactly_m, kExactly_rad) &&
-         relative_fit > kAsEver &&
+  return largest_m(T_end.inverse() * found.trajectory.end()) < kExactly_m && relative_fit >= 1.0 &&
          weak_directions(found.data_information, found.motion_information, T_end.rotation).count ==
              0;
 }
@@ -92,7 +82,7 @@ std::optional<Solution> Relocalizer::find(const Observation& scan, const Prior& 
     best = local.align(*scan.features, prior_at(best.trajectory.end(), prior), scan.finest_level);
   }
   const bool is_found = best.converged && best.inliers - best.structure_inliers > kMinGround &&
-                        last.fit.relative(best, scan.structure) > kHalfFit;
+                        last.fit.relative(best, scan.structure) > kDoubtfulFit;
   return is_found ? std::optional(best) : std::nullopt;
 }
 
@@ -103,15 +93,17 @@ void Relocalizer::attempt_all(const Observation& scan, const Prior& prior,
   const Trajectory predicted = local.unaligned(prior).trajectory;
   const Pose T_end = predicted.end();
   const double time_s = last.unseen_s(scan.timing) + scan.timing.span_s();
-  const SearchRadius radius{0.5 * kAcceleration_mps2 * time_s * time_s, kTurn_radps * time_s, 0.0};
+  const SearchRadius radius{0.5 * search::kAcceleration_mps2 * time_s * time_s,
+                            search::kTurn_radps * time_s, 0.0};
   draw_map(last, T_end.translation_m, local);
   attempts_[0] = at_prediction;
   attempt_count_ = 1;
   for (const Displacement& by : search_.find(*scan.features, predicted, radius)) {
     const Solution solution =
         local.align(*scan.features, prior_at(displaced(T_end, by), prior), scan.finest_level);
-    if (is_within(T_end.inverse() * solution.trajectory.end(), radius.along_m + kSame_m,
-                  radius.yaw_rad + kSame_rad)) {
+    const Pose departed = T_end.inverse() * solution.trajectory.end();
+    if (departed.translation_m.norm() < radius.along_m + search::kSamePlace_m &&
+        so3_log(departed.rotation).norm() < radius.yaw_rad + search::kSamePlace_m / kLever_m) {
       attempts_[attempt_count_++] = solution;
     }
   }
@@ -122,7 +114,7 @@ bool Relocalizer::is_unambiguous(const Solution& best) const {
   const Pose back = best.trajectory.end().inverse();
   return std::all_of(attempts_.data(), attempts_.data() + attempt_count_,
                      [&](const Solution& other) {
-                       return is_within(back * other.trajectory.end(), kSame_m, kSame_rad) ||
+                       return largest_m(back * other.trajectory.end()) < search::kSamePlace_m ||
                               fits_significantly_better(best, other);
                      });
 }

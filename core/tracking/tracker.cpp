@@ -12,11 +12,6 @@ namespace {
 
 constexpr int kScansToGiveUp = 10;  // in vain, on end
 
-bool is_stationary(const Twist& twist) {
-  constexpr double kStill_mps = 0.1, kStill_radps = 0.03;
-  return twist.linear_mps.norm() < kStill_mps && twist.angular_radps.norm() < kStill_radps;
-}
-
 }  // namespace
 
 Tracker::Tracker(const OdometryConfig& config)
@@ -113,7 +108,7 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
     return is_in_place(solution, prior, last_.fit.relative(solution, scan_.structure));
   };
   const bool is_searchable = last_.unseen_s(scan_.timing) <= kLongestGap_s;
-  if (!is_searchable && !is_stationary(local_.state().twist) && !is_predicted(at_prediction)) {
+  if (!is_searchable && !local_.is_standing() && !is_predicted(at_prediction)) {
     return std::nullopt;
   }
   const std::optional<Solution> found =
@@ -124,13 +119,10 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
 
 /// Whether an alignment found too little of the scan in the map.
 bool Tracker::is_lost(const Solution& solution) const {
-  // Of the features. Foliage and grass hardly match: in a park a fifth of the features may match,
-  // and the alignment be good. The last line notices where less fits than usual.
-  constexpr double kMinMatched = 0.05;
   constexpr double kMinWeight = 0.3;  // mean robust weight; a good alignment has 0.7 and more
   const double matched = solution.matched;
+  // Not a part of the features: in a park a fifth of them may match, and the alignment be good.
   return matched < static_cast<double>(kMinFeatures) ||
-         matched < kMinMatched * static_cast<double>(scan_.features->size()) ||
          solution.inliers < kMinWeight * matched ||
          last_.fit.relative(solution, scan_.structure) < kChanceFit;
 }
