@@ -66,7 +66,6 @@ struct DefaultConfig {
   int structure_features = 1100;  ///< everything that is not ground
   int map_features = 6000;        ///< features a keyframe adds to the map, at most
   double cell_m = 0.5;            ///< map cell; a distribution spans three of them
-  double coarse_cell_m = 1.5;     ///< map cell where the fine ones know too little
   int map_cells = 120000;         ///< fine cells of each kind, which bounds the memory
   double map_radius_m = 100.0;    ///< farther cells are forgotten
   double keyframe_m = 0.3;        ///< the map grows when the sensor has moved so far

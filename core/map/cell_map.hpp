@@ -66,8 +66,8 @@ class CellMap {
     add(find_or_insert(key), key, point_m, SampleGap(gap_m));
   }
 
-  /// The distribution around a point. Fits are cached: a young cell is fitted again after every
-  /// end_keyframe(), an older one at every sixth at most, and the older the less often.
+  /// The distribution around a point. Fits are cached: a cell is fitted again when it
+  /// has become half as old again, in keyframes.
   Match find(const Eigen::Vector3d& point_m) { return match(cell_at(key_of(point_m)), point_m); }
 
   /// find() and insert() in steps. Each but the last asks the memory for what the next one reads;

@@ -19,8 +19,8 @@ Prior predict(const MotionState& state, const ScanTiming& scan, const Vector6d& 
   const double since_s = state.end_ns ? seconds_between(*state.end_ns, scan.end_ns) : duration_s;
   Prior prior;
   // Returns that were compensated all belong to the end: the trajectory reaches back to the last.
-  prior.span_s = scan.motion_compensated ? since_s : duration_s;
-  if (prior.span_s <= 0.0) prior.span_s = duration_s;
+  const bool reaches_back = scan.motion_compensated && since_s > 0.0 && since_s <= kLongestGap_s;
+  prior.span_s = reaches_back ? since_s : duration_s;
   const double unseen_s = since_s - prior.span_s;
   const double gap_s = unseen_s > kLongestGap_s ? 0.0 : std::max(0.0, unseen_s);
   prior.T_begin = moved(state.T_odom_sensor, state.twist, gap_s);

@@ -32,7 +32,8 @@ void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns, const Ve
     const Vector6d square = ((velocity - velocity_).cwiseAbs2() - of_poses).cwiseMax(0.0);
     const Vector6d density = square * (1.5 * 2.0 / (interval_s + interval_s_));
     const Vector6d shared = mean_by_kind(density);
-    if (shared.allFinite()) {
+    // Information that is nearly singular may come out with a negative variance.
+    if (shared.allFinite() && variance.minCoeff() >= 0.0) {
       density_ += kNewest * (kBetweenScans * shared - density_);
       density_ = density_.cwiseMax(nominal_);
     }

@@ -184,7 +184,7 @@ Solution Solver::unaligned(const Prior& prior) const {
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
                        std::size_t finest) {
   constexpr double kNear_m = 0.03, kEnough_m = 3e-3;
-  // Weights and cells follow each step, so that the next would be about a quarter of it.
+  // Weights and cells follow each step, so that the next would be about a sixth of it.
   constexpr double kFurther = 1.2;
   std::size_t stride = kCoarse;
   double last_step_m = std::numeric_limits<double>::infinity();

@@ -45,7 +45,7 @@ class DisplacementSearch {
   /// `most_features`: of one scan.
   explicit DisplacementSearch(std::size_t most_features);
 
-  /// The structure within 128 m of `center_m` along either axis; a cell of it is 1.5 m at most.
+  /// The structure within 128 m of `center_m` along either axis; of its coarse cells.
   void set_map(const CellMap& structure, const Eigen::Vector3d& center_m);
 
   /// The likeliest displacements from where the scan was predicted to be, the best one first, all

@@ -131,7 +131,9 @@ MotionSearch::Result MotionSearch::find() {
   const int stationary = score({}, Subsample::all);
   const int alone = alone_[static_cast<std::size_t>(Subsample::all)];
   const int most = alone - alone / static_cast<int>(count_);  // all scans in the same cells
-  if (!is_significant(most, stationary, search::kClearly)) return {};
+  if (!is_significant(most, stationary, search::kClearly)) {
+    return {.is_unambiguous = is_significant(stationary, 0, search::kClearly)};
+  }
   try_all();
   keep_likely();
   const Hypothesis best =

@@ -3,8 +3,7 @@
 #include <array>
 #include <cstddef>
 
-/// Every number that the searches on the grid choose (hypothesis.hpp). Steps belong to the cell of
-/// 0.5 m: a hypothesis moves what is seen by about a cell from one step to the next.
+/// What the searches on the grid choose (hypothesis.hpp).
 namespace lilo::core::search {
 
 /// Scans of which a motion is judged.
@@ -15,13 +14,16 @@ inline constexpr double kTurn_radps = 1.0;
 
 // Of the initial motion, between scans 0.1 s apart.
 inline constexpr double kStep_mps = 1.0;  ///< grid step of the speed
-/// Yaw rate that moves what is 5 m away as far as 1 m/s does: the step of one for a step of the other.
+/// Yaw rate that moves what is 5 m away as far as 1 m/s does: the step of one for a step of the
+/// other.
 inline constexpr double kYawPerSpeed_radpm = 0.2;
-inline constexpr int kSpeeds = 40;          ///< up to 40 m/s
+inline constexpr int kSpeeds = 40;  ///< up to 40 m/s
 inline constexpr int kHeadings = 16;
 inline constexpr int kYawRates = 10;                  ///< to either side: up to 2 rad/s
 inline constexpr std::size_t kMostHypotheses = 4096;  ///< memory for all of these
 inline constexpr int kRefinements = 3;                ///< each halves the step
+/// 1 sigma of a velocity that was searched.
+inline constexpr double kSearched_mps = 1.0;
 /// Motions nearer to each other than this count as one.
 inline constexpr double kSameMotion_mps = 3.0;
 

@@ -30,10 +30,10 @@ class Drift {
   /// of so many.
   void inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor, int keyframes);
 
-  /// For `span_s` the scan told nothing of the motion along `axis` (unit vector, odometry's axes),
-  /// but that its acceleration is white noise of that density (m^2/s^3).
-  void coast(const Eigen::Vector3d& axis, double acceleration_density, double span_s);
-  /// For `span_s` it told of all directions.
+  /// For `span_s` the scan told nothing of the motion along the columns of `axes` (unit vectors or
+  /// zero, odometry's axes), but that its acceleration is white noise of that density (m^2/s^3).
+  void coast(const Eigen::Matrix3d& axes, double acceleration_density, double span_s);
+  /// For `span_s` it told of all translations.
   void see(double span_s);
 
   [[nodiscard]] Matrix6d covariance() const;

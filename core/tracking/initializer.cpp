@@ -8,8 +8,7 @@
 namespace lilo::core {
 namespace {
 
-// What is believed of a velocity near another, 1 sigma: near rest or the one tracked. A velocity
-// that was searched is known to a step of the search.
+// What is believed of a velocity near another, 1 sigma: near rest or the one tracked.
 constexpr double kNear_mps = 0.5;
 
 /// Whether a motion is not the one tracked.
@@ -35,8 +34,9 @@ void Initializer::clear() {
 bool Initializer::must_begin_again(const ScanTiming& scan, std::size_t feature_count,
                                    const MotionState& state) const {
   if (count_ == 0 || !state.end_ns) return false;
-  // Half of a revolution: packets were lost, or the recording began in the middle of it.
-  if (count_ == 1 && feature_count > 2 * scans_[0].feature_count) return true;
+  // Half of a revolution: packets were lost, or the recording began in the middle of it. Or the
+  // sensor was covered.
+  if (feature_count > 2 * scans_[0].feature_count) return true;
   // Long ago: only a sensor at rest may be supposed to have gone on as it did.
   const double unseen_s = std::abs(seconds_between(*state.end_ns, scan.start_ns));
   return unseen_s > kShortGap_s && (count_ == 1 || !is_stationary_);
@@ -71,9 +71,13 @@ void Initializer::note_track(std::size_t k, const Pose& T_begin, const Pose& T_e
 
 /// The constant motion nearest to the track so far.
 Twist Initializer::tracked_twist() const {
-  const double so_far_s =
-      seconds_between(scans_[0].timing.end_ns, scans_[count_ - 1].timing.end_ns);
-  return twist_between({}, tracks_[count_ - 1].T_end, so_far_s);
+  return twist_between({}, tracks_[count_ - 1].T_end, since_first_s(count_ - 1));
+}
+
+/// From the end of the first scan to that of another; where the stamps tell none, of so many spans.
+double Initializer::since_first_s(std::size_t k) const {
+  const double since_s = seconds_between(scans_[0].timing.end_ns, scans_[k].timing.end_ns);
+  return since_s > 0.0 ? since_s : static_cast<double>(k) * scans_[k].timing.span_s();
 }
 
 /// Adds what is believed of the speed along the ground to what the prediction knows of it.
@@ -91,7 +95,7 @@ void Initializer::add_velocity_prior(const Start& start, Prior& prior) {
 Initializer::Start Initializer::search() {
   const MotionSearch::Result found = search_.find();
   is_unambiguous_ = found.is_unambiguous;
-  return {found.twist, found.twist.linear_mps, found.moves ? search::kStep_mps : kNear_mps,
+  return {found.twist, found.twist.linear_mps, found.moves ? search::kSearched_mps : kNear_mps,
           found.moves};
 }
 
@@ -103,11 +107,12 @@ Solution Initializer::try_start(const Start& start, LocalOdometry& local) {
   Trajectory first;
   first.twist = start.twist;
   first.span_s = scans_[0].timing.span_s();
-  first.T_begin = moved({}, start.twist, -first.span_s);
+  first.T_begin = moved({}, start.twist, first.span_s).inverse();
   first.knots = Unknowns::Zero(Eigen::Index{kKnotSize} * (first.segments + 1));
   note_track(0, first.T_begin, {});
   local.begin_map_of(scans_[0].for_map, first, scans_[0].finest_level);
   prior.twist = start.twist;
+  prior.T_begin = moved({}, start.twist, since_first_s(1) - prior.span_s);
   // However often it is refined, what was believed at first stays believed.
   add_velocity_prior(start, prior);
   return local.align(scans_[1].selected, prior);
@@ -124,7 +129,7 @@ Solution Initializer::refine(Start& start, LocalOdometry& local) {
   Eigen::Vector3d step_mps = Eigen::Vector3d::Zero(), last_lack_mps = step_mps;
   Solution solution = try_start(start, local);
   for (int round = 0; round < kMaxRounds; ++round) {
-    const Twist found = twist_between({}, solution.trajectory.end(), solution.trajectory.span_s);
+    const Twist found = twist_between({}, solution.trajectory.end(), since_first_s(1));
     const Eigen::Vector3d lack_mps = found.linear_mps - start.twist.linear_mps;
     if (lack_mps.norm() < kSpeedEnough_mps) break;
     const Eigen::Vector3d less_mps = last_lack_mps - lack_mps;

@@ -66,6 +66,7 @@ class Initializer {
     bool moves = false;
   };
   [[nodiscard]] Twist tracked_twist() const;
+  [[nodiscard]] double since_first_s(std::size_t k) const;
   void note_track(std::size_t k, const Pose& T_begin, const Pose& T_end);
   static void add_velocity_prior(const Start& start, Prior& prior);
   Start search();

@@ -7,7 +7,7 @@
 namespace lilo::core {
 namespace {
 
-constexpr int kYoung_keyframes = 5;  // of a map that may know too little
+constexpr int kYoungMap = 5;  // keyframes of a map that may know too little
 
 LocalMaps make_cells(const DefaultConfig& c) {
   const auto map = [&](FeatureKind kind, double cell_m, int capacity) {
@@ -20,9 +20,10 @@ LocalMaps make_cells(const DefaultConfig& c) {
     return std::array{map(FeatureKind::ground, cell_m, capacity),
                       map(FeatureKind::structure, cell_m, capacity)};
   };
-  // Cells of a surface grow fewer with the square of their size; a quarter leaves room.
+  // A coarse cell is as wide as what a distribution of the usual ones spans. Cells of a surface
+  // grow fewer with the square of their size; a quarter leaves room.
   return LocalMaps({level(0.5 * c.cell_m, c.map_cells / 4), level(c.cell_m, c.map_cells),
-                    level(c.coarse_cell_m, c.map_cells / 4)});
+                    level(3.0 * c.cell_m, c.map_cells / 4)});
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
   held_.end_ns = scan.timing.end_ns;
   held_.finest_level = scan.finest_level;
   // While there is little else, a scan late is too late.
-  if (keyframes_ < kYoung_keyframes) insert_held();
+  if (keyframes_ < kYoungMap) insert_held();
   ++keyframes_;
   T_odom_keyframe_ = scan.T_odom_sensor;
   return true;
@@ -80,7 +81,7 @@ bool KeyframeMap::is_due(const AlignedScan& scan) const {
   constexpr double kKnowsEnough = 0.5;
   if (keyframes_ == 0) return true;
   const Solution& solution = scan.solution;
-  if (keyframes_ < kYoung_keyframes && solution.matched < kKnowsEnough * solution.looked_up) return true;
+  if (keyframes_ < kYoungMap && solution.matched < kKnowsEnough * solution.looked_up) return true;
   const Pose moved_by = T_odom_keyframe_.inverse() * scan.T_odom_sensor;
   return moved_by.translation_m.norm() >= config_.keyframe_m ||
          so3_log(moved_by.rotation).norm() >= config_.keyframe_rad;
@@ -89,7 +90,7 @@ bool KeyframeMap::is_due(const AlignedScan& scan) const {
 void KeyframeMap::hold(const std::vector<Feature>& features, bool with_overhead) {
   // In an abrupt turn after the start, near points hold the pose. Later the near cells are full,
   // and far points hold the attitude.
-  const Evenly evenly = keyframes_ < kYoung_keyframes ? Evenly::in_image : Evenly::along_rings;
+  const Evenly evenly = keyframes_ < kYoungMap ? Evenly::in_image : Evenly::along_rings;
   thin_out(features, static_cast<std::size_t>(config_.map_features), evenly, held_.features,
            with_overhead);
   held_.is_waiting = true;

@@ -33,7 +33,8 @@ struct AlignedScan {
 
 /// The local map and how it grows: by keyframes, which enter one scan late. The end of a scan is
 /// seen from one side only; the next scan sees it from the other and puts it right before its
-/// points enter the map. It forgets what is far away.
+/// points enter the map. The first five enter at once: a young map cannot wait. It forgets what is
+/// far away.
 ///
 /// Not thread-safe; no allocation after construction.
 class KeyframeMap {

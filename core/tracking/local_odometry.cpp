@@ -88,8 +88,8 @@ void LocalOdometry::grow_map(const Observation& scan, const std::vector<Feature>
   }
 }
 
-Pose LocalOdometry::begin_map() {
-  Pose at = state_.T_odom_sensor;
+Pose LocalOdometry::begin_map(const ScanTiming& first) {
+  Pose at = predicted_end(predict(first));
   uncertainty_.begin_map(state_);
   process_noise_.interrupt();
   standing_.end();

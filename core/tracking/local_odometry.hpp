@@ -67,8 +67,9 @@ class LocalOdometry {
   void grow_map(const Observation& scan, const std::vector<Feature>& features,
                 const Solution& solution, MapUse use);
 
-  /// Gives the map up and begins another where the sensor is now. Returns where that is.
-  Pose begin_map();
+  /// Gives the map up and begins another, at the end of its first scan. Returns where that is
+  /// predicted to be.
+  Pose begin_map(const ScanTiming& first);
   /// Back to the end of the first scan.
   void rewind(const ScanTiming& first);
   /// Builds the map of one scan alone, deskewed by `trajectory`.

@@ -9,7 +9,7 @@
 
 namespace lilo::core {
 
-/// A scan with fewer features than this says too little to be aligned.
+/// A scan with fewer features than this, or fewer that match, says too little.
 inline constexpr std::size_t kMinFeatures = 100;
 
 /// What the tracker looks at of one scan.

@@ -20,12 +20,17 @@ void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {
 void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state,
                             const Vector6d& density, double span_s) {
   constexpr double kMostlyTurns = 0.3;
-  const Eigen::Vector3d along = weak.all[0].direction.head<3>();  // m of a unit of rad and m
-  if (weak.count == 0 || along.norm() < kMostlyTurns) {
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+  int count = 0;
+  for (int k = 0; k < weak.count && count < 3; ++k) {
+    const Eigen::Vector3d along = weak.all[static_cast<std::size_t>(k)].direction.head<3>();  // m
+    if (along.norm() < kMostlyTurns) continue;
+    axes.col(count++) = state.T_odom_sensor.rotation * along.normalized();
+  }
+  if (count == 0) {
     drift_.see(span_s);
   } else {
-    drift_.coast(state.T_odom_sensor.rotation * along.normalized(), density.segment<2>(3).mean(),
-                 span_s);
+    drift_.coast(axes, density.segment<2>(3).mean(), span_s);
   }
 }
 

@@ -16,7 +16,8 @@ namespace {
 constexpr SearchRadius kSudden{0.0, 0.8, 0.0}, kSuddenBefore{0.0, 1.2, 0.4};
 // How well a place is known that was searched, 1 sigma.
 constexpr double kPlace_m = 0.5, kTurned_rad = kPlace_m / kLever_m;
-constexpr double kMinGround = 50.0;  // sum of robust weights; structure leaves height and tilt open
+// Sum of robust weights. Structure leaves height and tilt open.
+constexpr double kMinGround = 0.5 * static_cast<double>(kMinFeatures);
 
 double inverse_square(double sigma) { return 1.0 / (sigma * sigma); }
 
@@ -50,7 +51,7 @@ Prior prior_turned(const Displacement& by, bool may_begin_elsewhere, Prior prior
   prior.begin_information.setZero();
   prior.begin_information.topLeftCorner<6, 6>() = of_pose.inverse();
   prior.begin_information.diagonal().segment<3>(6).setConstant(inverse_square(search::kTurn_radps));
-  prior.begin_information.diagonal().tail<3>().setConstant(inverse_square(search::kStep_mps));
+  prior.begin_information.diagonal().tail<3>().setConstant(inverse_square(search::kSearched_mps));
   return prior;
 }
 

@@ -15,8 +15,7 @@ namespace lilo::core {
 
 /// What is known when the sensor has to be found in the map.
 struct LastAlignment {
-  std::int64_t end_ns = 0;   ///< last firing of the last scan that was aligned; names the map too,
-                             ///< which does not grow without an alignment
+  std::int64_t end_ns = 0;   ///< last firing of the last scan that was aligned
   bool is_doubtful = false;  ///< the last scan fitted much less than usual
   StructureFit fit;
 

@@ -67,7 +67,7 @@ void Tracker::begin_session() {
 }
 
 void Tracker::begin_map() {
-  session_ = {.T_odom_start = session_.T_odom_start * local_.begin_map(),
+  session_ = {.T_odom_start = session_.T_odom_start * local_.begin_map(scan_.timing),
               .restarts = session_.restarts};
   initializer_.clear();
   last_.fit = {};
@@ -102,7 +102,7 @@ std::optional<Solution> Tracker::solve(const Prior& prior) {
 /// The prediction, if the sensor is not found. None where it went unseen for longer than it can be
 /// searched: the old map must not be asked then, some place in it always looks like the new one.
 /// That the clock was set is no reason: then the sensor is where it was predicted. One that stood
-/// is waited for.
+/// is waited for while scans are missing or poor.
 std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const Prior& prior) {
   const auto is_predicted = [&](const Solution& solution) {
     return is_in_place(solution, prior, last_.fit.relative(solution, scan_.structure));
@@ -122,8 +122,7 @@ bool Tracker::is_lost(const Solution& solution) const {
   constexpr double kMinWeight = 0.3;  // mean robust weight; a good alignment has 0.7 and more
   const double matched = solution.matched;
   // Not a part of the features: in a park a fifth of them may match, and the alignment be good.
-  return matched < static_cast<double>(kMinFeatures) ||
-         solution.inliers < kMinWeight * matched ||
+  return matched < static_cast<double>(kMinFeatures) || solution.inliers < kMinWeight * matched ||
          last_.fit.relative(solution, scan_.structure) < kChanceFit;
 }
 
@@ -174,7 +173,8 @@ void Tracker::accept(const Prior& prior) {
 
 /// Whether the map led the sensor astray: another motion explains the last scans better.
 bool Tracker::is_refuted() {
-  if (phase_ == Phase::starting || alignment_.status == TrackingStatus::lost) {
+  // The scans before a gap, or before the clock was set, lie nowhere beside this one.
+  if (phase_ != Phase::tracking || alignment_.status == TrackingStatus::lost) {
     motion_check_.clear();
     return false;
   }
@@ -189,8 +189,11 @@ bool Tracker::is_refuted() {
 
 /// Ends the session where the map is of no more use.
 void Tracker::watch_session() {
-  const bool in_vain = !alignment_.is_explained && scan_.says_enough();
-  session_.scans_in_vain = in_vain ? session_.scans_in_vain + 1 : 0;
+  if (alignment_.is_explained) {
+    session_.scans_in_vain = 0;
+  } else if (scan_.says_enough()) {
+    ++session_.scans_in_vain;
+  }
   const bool refuted = is_refuted();
   if (refuted) alignment_.status = TrackingStatus::lost;
   session_.is_over = refuted || session_.scans_in_vain == kScansToGiveUp;

@@ -27,7 +27,7 @@ namespace lilo::core {
 ///
 /// and a new session is begun, with an empty map and `starting`, from
 ///
-///     any        ten scans in a row were not aligned
+///     any        ten scans, each with enough features, were not explained by the map
 ///     tracking   the motion was refuted (MotionCheck): the map may be bent
 ///     lost       unseen for more than 2.5 s, unless the sensor stood or is exactly where predicted
 enum class Phase : std::uint8_t { starting, tracking, lost };

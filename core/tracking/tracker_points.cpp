@@ -23,6 +23,7 @@ void Tracker::aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out
   out.clear();
   const std::vector<Feature>& chosen = selection_.chosen();
   const Trajectory& trajectory = alignment_.solution.trajectory;
+  if (trajectory.knots.size() == 0) return;  // before the first scan
   const Pose T_end_odom = trajectory.end().inverse();
   const Eigen::Matrix3f turned_back = T_end_odom.rotation.toRotationMatrix().cast<float>();
   Sampled sampled;

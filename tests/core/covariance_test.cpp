@@ -132,7 +132,9 @@ TEST(Drift, ASteadyErrorAddsUpAlongTheWayAndComesBackOnALoop) {
 TEST(Drift, WhatNoScanTellsIsDeadReckoned) {
   constexpr double kDensity = 3.0, kScan_s = 0.01;
   core::Drift drift;
-  for (int scan = 0; scan < 1000; ++scan) drift.coast({0.6, 0.8, 0.0}, kDensity, kScan_s);
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+  axes.col(0) = Eigen::Vector3d(0.6, 0.8, 0.0);
+  for (int scan = 0; scan < 1000; ++scan) drift.coast(axes, kDensity, kScan_s);
   const Matrix6d covariance = drift.covariance();
   EXPECT_NEAR(covariance(3, 3) / (0.36 * kDensity * 1000.0 / 3.0), 1.0, 0.01);
   EXPECT_NEAR(covariance(4, 4) / (0.64 * kDensity * 1000.0 / 3.0), 1.0, 0.01);

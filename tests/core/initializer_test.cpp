@@ -29,6 +29,7 @@ class Start {
                    solution, MapUse::keyframe);
     return false;
   }
+  void skip() { ++index_; }
   /// Scans until the motion is known; 10: never.
   int scans_until_known(double speed_mps) {
     for (int k = 1; k < 10; ++k) {
@@ -55,6 +56,16 @@ TEST(Initializer, FindsTheMotionOfTwoScans) {
     EXPECT_NEAR(state.T_odom_sensor.translation_m.x(), 0.1 * speed_mps, 0.03);
     EXPECT_EQ(start.initializer.is_stationary(), speed_mps < 5.0) << "0.3 m tell too little";
   }
+}
+
+// A scan that was dropped, or a sector that is blind where revolutions end, is way as well.
+TEST(Initializer, FindsTheMotionOfTwoScansThatDoNotFollowEachOther) {
+  Start start;
+  start.take(test::yard(), test::along_x(10.0, 0, -8.0));
+  start.skip();
+  start.take(test::yard(), test::along_x(10.0, 2, -8.0));
+  EXPECT_NEAR(start.local.state().twist.linear_mps.x(), 10.0, 0.2);
+  EXPECT_NEAR(start.local.state().T_odom_sensor.translation_m.x(), 2.0, 0.05);
 }
 
 TEST(Initializer, KnowsAMovingStartAfterSixScansAndAStandstillAfterFour) {
@@ -90,6 +101,8 @@ TEST(Initializer, BeginsAgainAfterAFragment) {
   const std::size_t count = first.features().size();
   EXPECT_FALSE(start.initializer.must_begin_again(next, count, state));
   EXPECT_TRUE(start.initializer.must_begin_again(next, 2 * count + 1, state));
+  start.take(scene, test::along_x(0.0, 1));
+  EXPECT_TRUE(start.initializer.must_begin_again(next, 2 * count + 1, state)) << "two fragments";
 }
 
 TEST(Initializer, BeginsAgainAfterAGapUnlessTheSensorStands) {

@@ -40,6 +40,13 @@ TEST(MotionSearch, ASensorAtRestIsStationaryBeyondDoubt) {
   EXPECT_EQ(result.twist.linear_mps, Eigen::Vector3d::Zero().eval());
 }
 
+// A sensor that is covered, or whose motor starts.
+TEST(MotionSearch, ScansWithoutReturnsTellNothing) {
+  MotionSearch search(kMost);
+  add_scans(search, test::Scene{}, 0.0, 2);
+  EXPECT_FALSE(search.find().is_unambiguous);
+}
+
 // Posts 1.5 m apart: 15 m/s more are one post more in each scan.
 TEST(MotionSearch, SaysThatEvenlySpacedPostsAreAmbiguous) {
   test::Scene road;

@@ -42,9 +42,13 @@ TEST(Predict, KnowsLessAfterAGap) {
 
 TEST(Predict, StaysWhereItWasOverALongGapOrAStepOfTheClock) {
   for (const double gap_s : {kLongestGap_s + 0.1, 3600.0, -3600.0}) {
-    const Prior prior = predict(driving(), scan_after(gap_s), kDensity, 2);
-    EXPECT_NEAR(prior.T_begin.translation_m.x(), 3.0, 1e-9) << gap_s;
-    EXPECT_NEAR(prior.span_s, 0.1, 1e-9) << gap_s;
+    for (const bool compensated : {false, true}) {
+      ScanTiming scan = scan_after(gap_s);
+      scan.motion_compensated = compensated;
+      const Prior prior = predict(driving(), scan, kDensity, 2);
+      EXPECT_NEAR(prior.T_begin.translation_m.x(), 3.0, 1e-9) << gap_s;
+      EXPECT_NEAR(prior.span_s, 0.1, 1e-9) << gap_s;
+    }
   }
 }
 

@@ -115,6 +115,21 @@ TEST(PoseUncertainty, AWeakDirectionIsDeadReckoned) {
   EXPECT_NEAR(of_odometry(4, 4), of_sensor(3, 3), 1e-9);
 }
 
+TEST(PoseUncertainty, EveryWeakDirectionIsDeadReckoned) {
+  PoseUncertainty uncertainty{kDataWeight};
+  WeakDirections weak;
+  weak.count = 3;
+  weak.all[0].direction = six(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);  // a round pipe does not tell roll
+  weak.all[1].direction = six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+  weak.all[2].direction = six(0.0, 1.0, 0.0, 0.0, 0.0, 0.0);
+  const Matrix6d before = uncertainty.covariance(exact_state());
+  for (int k = 0; k < 10; ++k) uncertainty.learn(weak, exact_state(), Vector6d::Ones(), 0.1);
+  const Matrix6d after = uncertainty.covariance(exact_state());
+  // q t^3 / 3 after 1 s; sums of ten steps are coarse.
+  for (const int axis : {3, 4}) EXPECT_NEAR(after(axis, axis) - before(axis, axis), 1.0 / 3.0, 0.1);
+  EXPECT_NEAR(after(5, 5), before(5, 5), 1e-9);
+}
+
 TEST(PoseUncertainty, WeaknessThatMostlyTurnsIsNotDeadReckoned) {
   PoseUncertainty uncertainty(kDataWeight);
   const Vector6d density = Vector6d::Ones();
