@@ -58,7 +58,7 @@ std::span<const Displacement> DisplacementSearch::find(const std::vector<Feature
   end_ = predicted.end();
   hypotheses_.clear();
   try_all(radius);
-  refine_best();
+  refine_best(radius.along_m > 0.0 ? 1 : 0);
   choose();
   return std::span(found_).first(found_count_);
 }
@@ -94,8 +94,8 @@ void DisplacementSearch::try_turned(const Displacement& turned, int farthest) {
   }
 }
 
-/// Leaves the hypotheses of the finer map alone.
-void DisplacementSearch::refine_best() {
+/// By one step of yaw, and by so many along. Leaves the hypotheses of the finer map alone.
+void DisplacementSearch::refine_best(int along) {
   const std::size_t best = std::min(search::kRefined, hypotheses_.size());
   const auto end_of_best = hypotheses_.begin() + static_cast<std::ptrdiff_t>(best);
   std::partial_sort(hypotheses_.begin(), end_of_best, hypotheses_.end(),
@@ -108,8 +108,8 @@ void DisplacementSearch::refine_best() {
       by.yaw_rad += search::kStep_rad * yaw;
       if (onset_ == Onset::before_scan) by.begin_yaw_rad = by.yaw_rad;
       turn(map_, by);
-      for (int x = -1; x <= 1; ++x) {
-        for (int y = -1; y <= 1; ++y) {
+      for (int x = -along; x <= along; ++x) {
+        for (int y = -along; y <= along; ++y) {
           by.along_m = middle.along_m + search::kStep_m * Eigen::Vector2d(x, y);
           score(map_, by);
         }

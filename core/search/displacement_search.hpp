@@ -56,7 +56,7 @@ class DisplacementSearch {
 
  private:
   void try_all(const SearchRadius& radius);
-  void refine_best();
+  void refine_best(int along);
   void choose();
   void try_turned(const Displacement& turned, int farthest);
   void turn(TopDownGrid& map, const Displacement& turned);
