@@ -11,8 +11,8 @@
 namespace lilo::core {
 namespace {
 
-// How far a turn within a scan may go; and where the last scan was doubtful as well, so that the
-// sensor may have gone astray before it.
+// How far a turn within a scan may go; and one that began before it, so that the sensor may have
+// gone astray already.
 constexpr SearchRadius kSudden{0.0, 0.8, 0.0}, kSuddenBefore{0.0, 1.2, 0.4};
 // How well a place is known that was searched, 1 sigma.
 constexpr double kPlace_m = 0.5, kTurned_rad = kPlace_m / kLever_m;
@@ -124,19 +124,32 @@ Solution Relocalizer::follow_turn(const Solution& found, const Observation& scan
                                   const Prior& prior, const LastAlignment& last,
                                   LocalOdometry& local) {
   if (last.fit.relative(found, scan.structure) > kDoubtfulFit) return found;
+  // A turn that began in the last tenth of the last scan left that one fitting well.
+  for (const bool may_begin_elsewhere : {last.is_doubtful, true}) {
+    const Solution best = best_turned(found, scan, prior, last, may_begin_elsewhere, local);
+    const bool is_better = fits_significantly_better(best, found) &&
+                           is_explained(best, last.fit.relative(best, scan.structure));
+    if (is_better) return best;
+    if (may_begin_elsewhere) break;
+  }
+  return found;
+}
+
+/// The best alignment of those from the likeliest turns, and of `found`.
+Solution Relocalizer::best_turned(const Solution& found, const Observation& scan,
+                                  const Prior& prior, const LastAlignment& last,
+                                  bool may_begin_elsewhere, LocalOdometry& local) {
   const Trajectory predicted = local.unaligned(prior).trajectory;
   draw_map(last, predicted.end().translation_m, local);
-  const SearchRadius& radius = last.is_doubtful ? kSuddenBefore : kSudden;
+  const SearchRadius& radius = may_begin_elsewhere ? kSuddenBefore : kSudden;
   Solution best = found;
   for (const Displacement& by :
        search_.find(*scan.features, predicted, radius, Onset::within_scan)) {
-    const Solution other =
-        local.align(*scan.features, prior_turned(by, last.is_doubtful, prior), scan.finest_level);
+    const Solution other = local.align(*scan.features, prior_turned(by, may_begin_elsewhere, prior),
+                                       scan.finest_level);
     if (fits_less(best, other)) best = other;
   }
-  const bool is_better = fits_significantly_better(best, found) &&
-                         is_explained(best, last.fit.relative(best, scan.structure));
-  return is_better ? best : found;
+  return best;
 }
 
 }  // namespace lilo::core

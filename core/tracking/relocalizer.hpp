@@ -56,6 +56,8 @@ class Relocalizer {
                 const LocalOdometry& local);
   void attempt_all(const Observation& scan, const Prior& prior, const Solution& at_prediction,
                    const LastAlignment& last, LocalOdometry& local);
+  Solution best_turned(const Solution& found, const Observation& scan, const Prior& prior,
+                       const LastAlignment& last, bool may_begin_elsewhere, LocalOdometry& local);
   [[nodiscard]] bool is_unambiguous(const Solution& best) const;
   [[nodiscard]] std::span<Solution> attempts() {
     return std::span(attempts_).first(attempt_count_);
