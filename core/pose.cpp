@@ -45,11 +45,11 @@ Pose Pose::inverse() const {
   return {back, -(back * translation_m)};
 }
 
-double largest_m(const Eigen::Vector3d& turned_rad, const Eigen::Vector3d& moved_m) {
+double magnitude_m(const Eigen::Vector3d& turned_rad, const Eigen::Vector3d& moved_m) {
   return std::max(moved_m.norm(), kLever_m * turned_rad.norm());
 }
 
-double largest_m(const Pose& T) { return largest_m(so3_log(T.rotation), T.translation_m); }
+double magnitude_m(const Pose& T) { return magnitude_m(so3_log(T.rotation), T.translation_m); }
 
 Pose scale_motion(const Pose& T, double s) {
   return {so3_exp(s * so3_log(T.rotation)), s * T.translation_m};

@@ -34,9 +34,10 @@ struct Pose {
 /// Where rotations and translations share a threshold, a rotation counts as the way of what is seen
 /// so far away.
 inline constexpr double kLever_m = 10.0;
-/// The larger of a translation and of what a rotation moves at the lever.
-[[nodiscard]] double largest_m(const Eigen::Vector3d& turned_rad, const Eigen::Vector3d& moved_m);
-[[nodiscard]] double largest_m(const Pose& T);
+/// Magnitude of a motion: the larger of its translation and of what its rotation moves at the
+/// lever.
+[[nodiscard]] double magnitude_m(const Eigen::Vector3d& turned_rad, const Eigen::Vector3d& moved_m);
+[[nodiscard]] double magnitude_m(const Pose& T);
 
 /// The motion `s` of the way from identity to `T`, at constant linear velocity (in the parent
 /// frame) and constant angular velocity. s may lie outside [0, 1].

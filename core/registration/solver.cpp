@@ -202,7 +202,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     solution.trajectory.knots += (stride == 1 ? kFurther : 1.0) * step;
     ++solution.iterations;
     const Vector6d end = step.segment<6>(n - kKnotSize);
-    const double step_m = largest_m(end.head<3>(), end.tail<3>());
+    const double step_m = magnitude_m(end.head<3>(), end.tail<3>());
     solution.converged = stride == 1 && step_m < kEnough_m;
     // A part of the features may lead the solution round in a circle: its steps grow no shorter.
     if (step_m < kNear_m || step_m >= last_step_m) stride = 1;
