@@ -18,8 +18,8 @@ void MotionCheck::clear() {
 
 void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
                       const ScanTiming& timing) {
-  newest_ = (newest_ + 1) % kScans;
-  count_ = std::min(count_ + 1, kScans);
+  newest_ = (newest_ + 1) % search::kScans;
+  count_ = std::min(count_ + 1, search::kScans);
   Scan& scan = scans_[newest_];
   structure_.assign(features);
   scan.points.assign(structure_, T_begin.rotation, T_end.rotation);
@@ -77,7 +77,7 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
 
 bool MotionCheck::is_refuted(const Eigen::Vector2d& axis) {
   constexpr int kOnEnd = 2;
-  if (count_ < kScans) return false;
+  if (count_ < search::kScans) return false;
   times_refuted_ = is_clearly_better(axis) ? times_refuted_ + 1 : 0;
   return times_refuted_ >= kOnEnd;
 }

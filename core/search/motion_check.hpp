@@ -36,7 +36,6 @@ class MotionCheck {
   bool is_refuted(const Eigen::Vector2d& axis);
 
  private:
-  static constexpr std::size_t kScans = search::kScans;
   struct Scan {
     TopDownPoints points;
     Eigen::Vector2d begin_m, end_m;
@@ -48,7 +47,7 @@ class MotionCheck {
   int least_occupied(const Eigen::Vector2d& axis, Subsample subsample);
   bool is_clearly_better(const Eigen::Vector2d& axis);
 
-  std::array<Scan, kScans> scans_;
+  std::array<Scan, search::kScans> scans_;
   std::size_t count_ = 0, newest_ = 0;
   int times_refuted_ = 0;      // on end
   StructurePoints structure_;  // of the newest

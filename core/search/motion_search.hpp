@@ -21,8 +21,6 @@ namespace lilo::core {
 /// Not thread-safe; no allocation after construction.
 class MotionSearch {
  public:
-  static constexpr std::size_t kMostScans = search::kScans;
-
   /// What was found. `is_unambiguous`: no other motion fits nearly as well.
   struct Result {
     Twist twist;
@@ -38,7 +36,7 @@ class MotionSearch {
   explicit MotionSearch(std::size_t most_features);
 
   void clear();
-  /// The next scan, at most kMostScans.
+  /// The next scan, at most search::kScans.
   void add(const ScanTiming& timing, const std::vector<Feature>& features);
 
   /// Stationary, unless another motion is significantly better.
@@ -64,7 +62,7 @@ class MotionSearch {
   void try_all();
   void keep_likely();
 
-  std::array<Scan, kMostScans> scans_;
+  std::array<Scan, search::kScans> scans_;
   std::size_t count_ = 0;
   std::array<int, 2> alone_{};  // by Subsample: cells that the scans occupy each for itself
   TopDownGrid grid_;

@@ -201,7 +201,7 @@ bool Initializer::recheck_moving(bool was_lost, LocalOdometry& local) {
       search_.is_better_than_track(other.twist, std::span(tracks_).first(count_))) {
     replay(other, local);
   }
-  return count_ == MotionSearch::kMostScans;
+  return count_ == search::kScans;
 }
 
 }  // namespace lilo::core

@@ -78,8 +78,8 @@ class Initializer {
   bool recheck_moving(bool was_lost, LocalOdometry& local);
 
   std::size_t most_for_map_;
-  std::array<Remembered, MotionSearch::kMostScans> scans_;
-  std::array<MotionSearch::Track, MotionSearch::kMostScans> tracks_;  // the newest as predicted
+  std::array<Remembered, search::kScans> scans_;
+  std::array<MotionSearch::Track, search::kScans> tracks_;  // the newest as predicted
   std::size_t count_ = 0;
   MotionSearch search_;
   bool is_unambiguous_ = false;  // no other motion fits nearly as well
