@@ -11,8 +11,7 @@
 namespace lilo::core {
 namespace {
 
-// How far a turn within a scan may go; and one that began before it, so that the sensor may have
-// gone astray already.
+// How far a turn may go that begins within this scan, and one that began within the last scan.
 constexpr SearchRadius kSudden{0.0, 0.8, 0.0}, kSuddenBefore{0.0, 1.2, 0.4};
 // How well a place is known that was searched, 1 sigma.
 constexpr double kPlace_m = 0.5, kTurned_rad = kPlace_m / kLever_m;
@@ -60,7 +59,8 @@ Prior prior_turned(const Displacement& by, bool may_begin_elsewhere, Prior prior
 bool is_in_place(const Solution& found, const Prior& prior, double relative_fit) {
   constexpr double kExactly_m = 0.2;
   const Pose T_end = predicted_end(prior);
-  return largest_m(T_end.inverse() * found.trajectory.end()) < kExactly_m && relative_fit >= 1.0 &&
+  return magnitude_m(T_end.inverse() * found.trajectory.end()) < kExactly_m &&
+         relative_fit >= 1.0 &&
          weak_directions(found.data_information, found.motion_information, T_end.rotation).count ==
              0;
 }
@@ -115,7 +115,7 @@ bool Relocalizer::is_unambiguous(const Solution& best) const {
   const Pose back = best.trajectory.end().inverse();
   return std::all_of(attempts_.data(), attempts_.data() + attempt_count_,
                      [&](const Solution& other) {
-                       return largest_m(back * other.trajectory.end()) < search::kSamePlace_m ||
+                       return magnitude_m(back * other.trajectory.end()) < search::kSamePlace_m ||
                               fits_significantly_better(best, other);
                      });
 }
@@ -124,24 +124,21 @@ Solution Relocalizer::follow_turn(const Solution& found, const Observation& scan
                                   const Prior& prior, const LastAlignment& last,
                                   LocalOdometry& local) {
   if (last.fit.relative(found, scan.structure) > kDoubtfulFit) return found;
-  // A turn that began in the last tenth of the last scan left that one fitting well.
-  for (const bool may_begin_elsewhere : {last.is_doubtful, true}) {
-    const Solution best = best_turned(found, scan, prior, last, may_begin_elsewhere, local);
-    const bool is_better = fits_significantly_better(best, found) &&
-                           is_explained(best, last.fit.relative(best, scan.structure));
-    if (is_better) return best;
-    if (may_begin_elsewhere) break;
-  }
-  return found;
+  std::optional<Solution> turned;
+  if (!last.is_doubtful) turned = better_turned(found, scan, prior, last, kSudden, local);
+  // A turn that began at the very end of the last scan left that one fitting well.
+  if (!turned) turned = better_turned(found, scan, prior, last, kSuddenBefore, local);
+  return turned.value_or(found);
 }
 
-/// The best alignment of those from the likeliest turns, and of `found`.
-Solution Relocalizer::best_turned(const Solution& found, const Observation& scan,
-                                  const Prior& prior, const LastAlignment& last,
-                                  bool may_begin_elsewhere, LocalOdometry& local) {
+/// The best alignment from the likeliest turns, where significantly more fits than in `found`.
+std::optional<Solution> Relocalizer::better_turned(const Solution& found, const Observation& scan,
+                                                   const Prior& prior, const LastAlignment& last,
+                                                   const SearchRadius& radius,
+                                                   LocalOdometry& local) {
   const Trajectory predicted = local.unaligned(prior).trajectory;
   draw_map(last, predicted.end().translation_m, local);
-  const SearchRadius& radius = may_begin_elsewhere ? kSuddenBefore : kSudden;
+  const bool may_begin_elsewhere = radius.begin_yaw_rad > 0.0;
   Solution best = found;
   for (const Displacement& by :
        search_.find(*scan.features, predicted, radius, Onset::within_scan)) {
@@ -149,7 +146,9 @@ Solution Relocalizer::best_turned(const Solution& found, const Observation& scan
                                        scan.finest_level);
     if (fits_less(best, other)) best = other;
   }
-  return best;
+  const bool is_better = fits_significantly_better(best, found) &&
+                         is_explained(best, last.fit.relative(best, scan.structure));
+  return is_better ? std::optional(best) : std::nullopt;
 }
 
 }  // namespace lilo::core

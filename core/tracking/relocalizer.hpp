@@ -46,8 +46,8 @@ class Relocalizer {
                                LocalOdometry& local);
 
   /// Where `found`, the alignment from the prediction, fits far worse than usual, the sensor may
-  /// have begun to turn faster than it can follow: turns within the scan are searched, and taken
-  /// where significantly more fits.
+  /// have begun to turn faster than it can follow: turns within the scan are searched, then those
+  /// that began within the last one, and taken where significantly more fits.
   Solution follow_turn(const Solution& found, const Observation& scan, const Prior& prior,
                        const LastAlignment& last, LocalOdometry& local);
 
@@ -56,8 +56,9 @@ class Relocalizer {
                 const LocalOdometry& local);
   void attempt_all(const Observation& scan, const Prior& prior, const Solution& at_prediction,
                    const LastAlignment& last, LocalOdometry& local);
-  Solution best_turned(const Solution& found, const Observation& scan, const Prior& prior,
-                       const LastAlignment& last, bool may_begin_elsewhere, LocalOdometry& local);
+  std::optional<Solution> better_turned(const Solution& found, const Observation& scan,
+                                        const Prior& prior, const LastAlignment& last,
+                                        const SearchRadius& radius, LocalOdometry& local);
   [[nodiscard]] bool is_unambiguous(const Solution& best) const;
   [[nodiscard]] std::span<Solution> attempts() {
     return std::span(attempts_).first(attempt_count_);

@@ -81,6 +81,22 @@ TEST_F(RelocalizerTest, FollowsATurnThatBeginsWithinTheScan) {
   EXPECT_LT(so3_log(error.rotation).norm(), 0.02);
 }
 
+// The last scan saw too little of the turn to fit badly, and its end was taken for one at rest.
+TEST_F(RelocalizerTest, FollowsATurnThatBeganAtTheEndOfTheLastScan) {
+  constexpr double kBegin_rad = 0.3, kEnd_rad = 1.0;
+  const auto turning = [](double s) {
+    return at(0.0, 0.0, kBegin_rad + (kEnd_rad - kBegin_rad) * s);
+  };
+  const test::ObservedScan scan(test::yard(), turning, 6);
+  const Prior prior = local_.predict(scan.timing());
+  const Solution found = local_.align(scan.features(), prior);
+  const Solution followed =
+      relocalizer_.follow_turn(found, scan.observation(), prior, last_, local_);
+  const Pose error = at(0.0, 0.0, kEnd_rad).inverse() * followed.trajectory.end();
+  EXPECT_LT(error.translation_m.norm(), 0.05);
+  EXPECT_LT(so3_log(error.rotation).norm(), 0.02);
+}
+
 TEST_F(RelocalizerTest, LeavesAnAlignmentThatFitsAlone) {
   const test::ObservedScan scan(
       test::yard(), [](double) { return Pose{}; }, 6);
