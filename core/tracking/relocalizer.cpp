@@ -13,7 +13,7 @@ namespace {
 
 // How far a turn may go that begins within this scan, and one that began within the last scan.
 constexpr SearchRadius kSudden{0.0, 0.8, 0.0}, kSuddenBefore{0.0, 1.2, 0.4};
-// How well a place is known that was searched, 1 sigma.
+// How well a place is known that was searched, 1 sigma; and how far off a turn in place may end.
 constexpr double kPlace_m = 0.5, kTurned_rad = kPlace_m / kLever_m;
 // Sum of robust weights. Structure leaves height and tilt open.
 constexpr double kMinGround = 0.5 * static_cast<double>(kMinFeatures);
@@ -131,7 +131,8 @@ Solution Relocalizer::follow_turn(const Solution& found, const Observation& scan
   return turned.value_or(found);
 }
 
-/// The best alignment from the likeliest turns, where significantly more fits than in `found`.
+/// The best alignment from the likeliest turns, where significantly more fits than in `found`. One
+/// that left the place in which it was searched is of another motion, which nothing suggests.
 std::optional<Solution> Relocalizer::better_turned(const Solution& found, const Observation& scan,
                                                    const Prior& prior, const LastAlignment& last,
                                                    const SearchRadius& radius,
@@ -139,12 +140,14 @@ std::optional<Solution> Relocalizer::better_turned(const Solution& found, const 
   const Trajectory predicted = local.unaligned(prior).trajectory;
   draw_map(last, predicted.end().translation_m, local);
   const bool may_begin_elsewhere = radius.begin_yaw_rad > 0.0;
+  const Eigen::Vector3d place_m = predicted.end().translation_m;
   Solution best = found;
   for (const Displacement& by :
        search_.find(*scan.features, predicted, radius, Onset::within_scan)) {
     const Solution other = local.align(*scan.features, prior_turned(by, may_begin_elsewhere, prior),
                                        scan.finest_level);
-    if (fits_less(best, other)) best = other;
+    const double departed_m = (other.trajectory.end().translation_m - place_m).norm();
+    if (departed_m < kPlace_m && fits_less(best, other)) best = other;
   }
   const bool is_better = fits_significantly_better(best, found) &&
                          is_explained(best, last.fit.relative(best, scan.structure));
