@@ -70,9 +70,11 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
     lay(scan, {}, Subsample::all);
     alone += grid_.occupied();
   }
-  // Where scans hardly have cells in common, these tell nothing: all cells count as chance.
+  // Where scans hardly have cells in common, these tell nothing: all cells count as chance. The
+  // best of sixteen false motions is two sigmas better now and then where someone carries the
+  // sensor.
   return is_significant(alone - least, alone - tracked, search::kClearly) &&
-         tracked - least > search::kClearly * std::sqrt(static_cast<double>(tracked));
+         tracked - least > search::kBeyondDoubt * std::sqrt(static_cast<double>(tracked));
 }
 
 bool MotionCheck::is_refuted(const Eigen::Vector2d& axis) {

@@ -39,8 +39,9 @@ inline constexpr std::size_t kRefined = 12;  ///< best coarse hypotheses that ar
 inline constexpr double kSamePlace_m = 1.5;
 
 // Significance, in sigmas.
-inline constexpr double kClearly = 2.0;      ///< to prefer a hypothesis
-inline constexpr double kBeyondDoubt = 3.0;  ///< to drop one on few points, or a usual motion
-inline constexpr double kProbably = 1.0;     ///< to restart from another motion
+inline constexpr double kClearly = 2.0;  ///< to prefer a hypothesis
+inline constexpr double kBeyondDoubt =
+    3.0;                                  ///< to drop one on few points, a usual motion, a session
+inline constexpr double kProbably = 1.0;  ///< to restart from another motion
 
 }  // namespace lilo::core::search
