@@ -82,12 +82,13 @@ double Initializer::since_first_s(std::size_t k) const {
 
 /// Adds what is believed of the speed along the ground to what the prediction knows of it.
 void Initializer::add_velocity_prior(const Start& start, Prior& prior) {
-  const Eigen::Vector3d predicted_mps = prior.T_begin.rotation * prior.twist.linear_mps;
+  const Eigen::Vector3d lack_mps =
+      prior.T_begin.rotation * (start.velocity_mps - prior.twist.linear_mps);
   const double weight = 1.0 / (start.sigma_mps * start.sigma_mps);
   KnotInformation both = prior.begin_information;
   both.diagonal().segment<2>(9).array() += weight;
   Knot sum = prior.begin_information * prior.begin_mean;
-  sum.segment<2>(9) += weight * (start.velocity_mps - predicted_mps).head<2>();
+  sum.segment<2>(9) += weight * lack_mps.head<2>();
   prior.begin_mean = both.ldlt().solve(sum);
   prior.begin_information = both;
 }
