@@ -101,10 +101,10 @@ std::vector<Key> default_profile_keys() {
               "", kRestart, "Width of the range image. An HDL-64E's is 576 wide at most."),
       integer(
           "odometry.default.ground_features", LILO_MEMBER(odometry.default_profile.ground_features),
-          50, 20000, "", kRestart,
+          100, 20000, "", kRestart,
           "Ground points a scan is aligned by, about so many. More is more accurate and slower."),
       integer("odometry.default.structure_features",
-              LILO_MEMBER(odometry.default_profile.structure_features), 50, 20000, "", kRestart,
+              LILO_MEMBER(odometry.default_profile.structure_features), 100, 20000, "", kRestart,
               "The same for everything that stands."),
       integer("odometry.default.map_features", LILO_MEMBER(odometry.default_profile.map_features),
               500, 200000, "", kRestart, "Points a keyframe adds to the map, at most."),

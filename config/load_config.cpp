@@ -1,7 +1,7 @@
 #include "config/config.hpp"
 #include "config/key.hpp"
 #include "config/yaml_reader.hpp"
-#include "core/map/cell_table.hpp"
+#include "core/map/local_maps.hpp"
 #include "core/odometry.hpp"
 
 #include <fmt/format.h>
@@ -53,15 +53,19 @@ void check_map(const Config& c, std::vector<Contradiction>& found) {
   const double cell_m = c.odometry.default_profile.cell_m;
   const double radius_m = c.odometry.default_profile.map_radius_m;
   const double range_m = std::min(c.odometry.max_range_m, c.sensor.max_range_m);
-  const double reach_m = radius_m + std::max(radius_m, range_m);
-  constexpr int kCells = core::CellTable::kSafeLevels;
-  if (reach_m <= kCells * cell_m) return;
+  const auto least_m = [&](double within_m) {
+    return (within_m + std::max(within_m, range_m)) / core::CellTable::kSafeLevels;
+  };
+  // Half cells are kept nearby only, but reach as far as returns do.
+  const double least_cell_m = std::max(
+      least_m(radius_m), 2.0 * least_m(std::min(radius_m, core::LocalMaps::kNarrowRadius_m)));
+  if (cell_m >= least_cell_m) return;
   found.push_back(
       {{"odometry.default.cell_m", "odometry.default.map_radius_m", "odometry.max_range_m",
         "sensor.max_range_m"},
        fmt::format("expected at least {:.4f} with odometry.default.map_radius_m {} and returns "
                    "from up to {} m (max_range_m), found {}",
-                   std::ceil(1e4 * reach_m / kCells) * 1e-4, radius_m, range_m, cell_m)});
+                   std::ceil(1e4 * least_cell_m) * 1e-4, radius_m, range_m, cell_m)});
 }
 
 // Whether a datagram to `sink` comes to the socket that is bound to that address and port.

@@ -5,8 +5,7 @@
 namespace lilo::core {
 namespace {
 
-constexpr std::size_t kAtATime = 16;      // so that the memory's answers overlap
-constexpr double kNarrowRadius_m = 20.0;  // rooms hide what is farther
+constexpr std::size_t kAtATime = 16;  // so that the memory's answers overlap
 
 }  // namespace
 

@@ -24,6 +24,8 @@ class LocalMaps {
   /// into one another.
   static constexpr std::size_t kLevels = 3;
   static constexpr std::size_t kNarrow = 0, kUsual = 1, kCoarse = 2;
+  /// Half cells farther away are forgotten: rooms hide what is there.
+  static constexpr double kNarrowRadius_m = 20.0;
   using PerLevel = std::array<std::int32_t, kLevels>;
   static constexpr PerLevel kNoCells{CellMap::kNone, CellMap::kNone, CellMap::kNone};
 

@@ -99,7 +99,7 @@ TEST(LoadConfig, CalibrationFileIsRelativeToTheConfiguration) {
 }
 
 TEST(LoadConfig, TakesCellsJustLargeEnoughForTheMap) {
-  EXPECT_EQ(errors_of("odometry:\n  default:\n    cell_m: 0.196\n"), "");
+  EXPECT_EQ(errors_of("odometry:\n  default:\n    cell_m: 0.235\n"), "");
   EXPECT_EQ(errors_of("odometry:\n  max_range_m: 20\n  default:\n    cell_m: 0.1\n"
                       "    map_radius_m: 51\n"),
             "");
@@ -191,11 +191,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "3:1: expected YAML, found: end of sequence flow not found"},
         BadCase{"Contradiction", "sensor:\n  min_range_m: 9\n  max_range_m: 8\n",
                 "2:16: sensor.min_range_m: expected less than sensor.max_range_m (8), found 9"},
-        // 100 m of radius and 100 m of range are 200 m, or 1022 cells of 0.1957 m.
-        BadCase{"CellsTooSmallForTheMap", "odometry:\n  default:\n    cell_m: 0.195\n",
-                "3:13: odometry.default.cell_m: expected at least 0.1957 with "
+        // Half cells are kept within 20 m. With 100 m of range these are 120 m, or 1022 halves of
+        // 0.2349 m.
+        BadCase{"CellsTooSmallForTheMap", "odometry:\n  default:\n    cell_m: 0.234\n",
+                "3:13: odometry.default.cell_m: expected at least 0.2349 with "
                 "odometry.default.map_radius_m 100 and returns from up to 100 m (max_range_m), "
-                "found 0.195"},
+                "found 0.234"},
         BadCase{"MapTooWideForItsCells", "odometry:\n  default:\n    map_radius_m: 300\n",
                 "3:19: odometry.default.cell_m: expected at least 0.5871 with "
                 "odometry.default.map_radius_m 300 and returns from up to 100 m (max_range_m), "
