@@ -72,6 +72,8 @@ bool ScanAssembler::add_late(const PacketDecoder& decoder, std::int64_t line_ns)
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::int64_t column_ns = line_ns + columns[i].first_ns;
     if (column_ns < scan_start_ns_) continue;
+    // Wrong azimuths look like a blind sector within the packet, and put what is behind it later.
+    if (line_ns + columns[i].last_ns > last_firing_ns_) continue;
     auto& returns = scan_->returns;
     const auto t_ns = static_cast<std::int32_t>(column_ns - scan_start_ns_);
     const auto place = std::upper_bound(returns.begin(), returns.end(), t_ns,
@@ -86,7 +88,6 @@ bool ScanAssembler::add_late(const PacketDecoder& decoder, std::int64_t line_ns)
     std::rotate(returns.begin() + place_index, returns.begin() + old_size, returns.end());
     sink_.inserted(static_cast<std::size_t>(place_index));
     coverage_.mark(phase_of(columns[i].azimuth_ticks));
-    scan_end_ns_ = std::max(scan_end_ns_, line_ns + columns[i].last_ns);
   }
   if (!used) return line_ns < scan_start_ns_ && !follows_scan_;
   ++counts_.reordered;
