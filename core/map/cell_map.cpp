@@ -9,8 +9,11 @@
 namespace lilo::core {
 namespace {
 
-constexpr float kMinCount = 6.0F;     // points a window needs
-constexpr float kFewPoints_m = 0.1F;  // 1 sigma of what one point says of the surface around it
+constexpr float kMinCount = 6.0F;  // points a window needs
+// 1 sigma of what one point says of the surface around it. The points of a young cell come from few
+// scans, and share their errors.
+constexpr float kPoint_m = 0.05F, kYoungPoint_m = 0.1F;
+constexpr std::uint32_t kYoungCell = 5;  // keyframes
 // A direction informs if its spread (1 sigma) stays under this part of the window's width; an even
 // filling has 0.29.
 constexpr float kThin = 0.065F;
@@ -122,7 +125,8 @@ void CellMap::fit(Cell& cell) const {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(matrix_of<float>(squares_of(sums) / count - outer(cell.mean_m)));
   const float thin_m = kThin * 3.0F * config_.cell_m;
-  const float doubt = config_.noise_m * config_.noise_m + kFewPoints_m * kFewPoints_m / count;
+  const float point_m = age < kYoungCell ? kYoungPoint_m : kPoint_m;
+  const float doubt = config_.noise_m * config_.noise_m + point_m * point_m / count;
   // Thin in two directions, a strip of ground may lean any way about its length.
   constexpr float kUpright = 0.7F;  // cosine
   if (config_.level && (solver.eigenvalues()[1] < thin_m * thin_m ||
