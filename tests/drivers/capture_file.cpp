@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 namespace lilo::test {
@@ -154,7 +155,12 @@ std::vector<Record> records_of(const std::vector<TimedPacket>& packets) {
 }
 
 std::string write_file(const std::string& name, const std::string& bytes) {
-  std::string path = testing::TempDir() + "/" + name;
+  // Tests run side by side, and several write files of one name.
+  const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+  const auto folder = std::filesystem::path(testing::TempDir()) / "lilo_drivers_test" /
+                      test.test_suite_name() / test.name();
+  std::filesystem::create_directories(folder);
+  const std::string path = folder / name;
   std::ofstream(path, std::ios::binary) << bytes;
   return path;
 }

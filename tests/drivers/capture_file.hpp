@@ -38,7 +38,7 @@ std::string pcapng_bytes(const std::vector<Record>& records);
 /// Each packet as Ethernet, at the time it was received.
 std::vector<Record> records_of(const std::vector<TimedPacket>& packets);
 
-/// Writes to a file of this name in the tests' folder and says where that is.
+/// Writes to a file of this name in a folder of the running test and says where that is.
 std::string write_file(const std::string& name, const std::string& bytes);
 
 }  // namespace lilo::test
