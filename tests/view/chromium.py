@@ -21,7 +21,7 @@ class Chromium:
     """One browser with one page, drawing in software."""
 
     def __init__(self, width=1280, height=800, scheme="dark", flags=()):
-        self._profile = tempfile.TemporaryDirectory(prefix="lilo_chromium_")
+        self._profile = tempfile.TemporaryDirectory(prefix="lilo_chromium_", ignore_cleanup_errors=True)
         to_us, from_browser = os.pipe()
         from_us, to_browser = os.pipe()
 

@@ -249,8 +249,7 @@ class Recorded(WithPrograms):
         file.write_bytes(b"\x89MCAP0\r\n\x05")
         view, browser = self.view(file), self.browser(400, 300)
         browser.open(view.url)
-        browser.wait("window.lilo && lilo.source.view.done")
-        self.assertIn("byte 8: ends early", browser.run("document.body.innerText"))
+        browser.wait("document.body.innerText.includes('byte 8: ends early')")
 
 
 class Access(WithPrograms):
