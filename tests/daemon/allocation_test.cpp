@@ -4,6 +4,7 @@
 #include "daemon/pose_message.hpp"
 #include "daemon/publisher.hpp"
 #include "daemon/receiver.hpp"
+#include "daemon/request.hpp"
 #include "daemon/sinks.hpp"
 #include "tests/daemon/vlp16_packets.hpp"
 
@@ -123,6 +124,19 @@ TEST(Allocation, WritingPointsHasNone) {
     bytes += write_points(context, PointSet::scan, points_m, k, json).size();
   EXPECT_EQ(allocations - before, 0U);
   EXPECT_GT(bytes, 600U * 8U);
+}
+
+// Subscribers renew while poses are sent. The token has 16 digits: more than a short string holds.
+TEST(Allocation, ReadingARenewedSubscriptionHasOneForItsToken) {
+  const std::string renewed = R"({"subscribe":{"ttl_s":5,"points":true,"packets":false}})";
+  const std::string by_token =
+      R"({"token":"0123456789abcdef","subscribe":{"ttl_s":5,"points":true}})";
+  std::uint64_t before = allocations;
+  EXPECT_TRUE(parse_request(renewed).request->wants.points);
+  EXPECT_EQ(allocations - before, 0U);
+  before = allocations;
+  EXPECT_EQ(parse_request(by_token).request->token, "0123456789abcdef");
+  EXPECT_LE(allocations - before, 1U);
 }
 
 /// A sensor as fast as its packets are taken, but for a breath between two.
