@@ -1,11 +1,14 @@
 #include "tools/eval/trust.hpp"
 
 #include "tests/tools/temporary_file.hpp"
+#include "tests/tools/temporary_folder.hpp"
 #include "tools/eval/report.hpp"
+#include "tools/record/recording.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <fstream>
 #include <numbers>
 
 namespace lilo {
@@ -168,7 +171,8 @@ TEST(FalseTracking, AtStandstillIsSeenFromTheFirstPose) {
 
 std::string line_of(int k, const std::string& session, const std::string& status) {
   return R"({"seq":)" + std::to_string(k) + R"(,"session":")" + session +
-         R"(","pose":{"stamp":{"sec":)" + std::to_string(k) + R"(,"nsec":5},"status":")" + status +
+         R"(","pose":{"stamp":{"sec":)" + std::to_string(k) +
+         R"(,"nsec":5},"frame_id":"odom","child_frame_id":"velodyne","status":")" + status +
          R"(","position":{"x":)" + std::to_string(k) +
          R"(,"y":0,"z":0},"orientation":{"x":0,"y":0,"z":0,"w":1}}})" + "\n";
 }
@@ -193,6 +197,32 @@ TEST(PoseStream, IsReadLineByLine) {
   EXPECT_EQ(stream.poses[2].session, 1);
   EXPECT_EQ(stream.poses[2].pose.pose.translation_m.x(), 5.0);
   EXPECT_FALSE(stream.poses[0].covariance);
+}
+
+// What lilo record wrote tells the same, whichever ending it was given.
+TEST(PoseStream, IsReadFromMcapToo) {
+  const TemporaryFolder folder;
+  const std::string lines = folder.path() + "/a.jsonl", mcap = folder.path() + "/a.mcap";
+  for (const std::string& file : {lines, mcap}) {
+    Recording recording(file);
+    recording.take(line_of(3, "aa", "initializing"), 0);
+    recording.take(R"({"health":{}})", 1);
+    recording.take(line_of(4, "aa", "tracking"), 2);
+    recording.take(line_of(5, "bb", "tracking"), 3);
+    recording.finish();
+    EXPECT_TRUE(is_pose_stream(file));
+  }
+  const PoseStream a = read_pose_stream(lines), b = read_pose_stream(mcap);
+  ASSERT_EQ(a.poses.size(), 3U);
+  ASSERT_EQ(b.poses.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(b.poses[k].pose.stamp_ns, a.poses[k].pose.stamp_ns);
+    EXPECT_EQ(b.poses[k].status, a.poses[k].status);
+    EXPECT_EQ(b.poses[k].session, a.poses[k].session);
+  }
+  const std::string cut = folder.path() + "/cut.mcap";
+  std::ofstream(cut) << "\x89MCAP0\r\n\x05";
+  EXPECT_EQ(error_of(cut), cut + ": byte 8: ends early; mcap recover mends it");
 }
 
 TEST(PoseStream, MistakesNameTheirLine) {

@@ -40,7 +40,7 @@ void add_eval_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("eval", "Compare an estimated trajectory with the truth");
   command
       ->add_option("ESTIMATE", options->estimate,
-                   "TUM or KITTI poses, or what lilo run --poses wrote")
+                   "TUM or KITTI poses, or what lilo run --poses or lilo record wrote")
       ->required();
   command
       ->add_option("TRUTH", options->truth,

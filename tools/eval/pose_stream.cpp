@@ -2,10 +2,12 @@
 
 #include "daemon/pose_message.hpp"
 #include "tools/listen/pose_message.hpp"
+#include "tools/record/mcap_reader.hpp"
 #include "tools/text_file.hpp"
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <stdexcept>
 
 namespace lilo {
@@ -19,7 +21,7 @@ std::optional<TrackingStatus> status_named(const std::string& name) {
   return std::nullopt;
 }
 
-/// Takes the lines of a file one by one.
+/// Takes the lines or messages of a file one by one.
 class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path) { stream.name = path; }
@@ -60,18 +62,32 @@ class Reader {
   int sessions_ = 0;  // before the one of session_
 };
 
+bool is_mcap(const std::string& path) { return std::filesystem::path(path).extension() == ".mcap"; }
+
+void read_lines(const std::string& path, Reader& reader) {
+  std::ifstream file = open_text(path);
+  for (std::string line; std::getline(file, line);) reader.take(line);
+}
+
+void read_mcap(const std::string& path, Reader& reader) {
+  mcap::Reader file(path);
+  for (mcap::Message message; file.next(message);) {
+    if (message.topic.starts_with("/lilod/")) reader.take(std::string(message.data));
+  }
+}
+
 }  // namespace
 
 bool is_pose_stream(const std::string& path) {
+  if (is_mcap(path)) return true;
   std::ifstream file = open_text(path);
   char first = 0;
   return file >> first && first == '{';
 }
 
 PoseStream read_pose_stream(const std::string& path) {
-  std::ifstream file = open_text(path);
   Reader reader(path);
-  for (std::string line; std::getline(file, line);) reader.take(line);
+  is_mcap(path) ? read_mcap(path, reader) : read_lines(path, reader);
   if (reader.stream.poses.empty()) {
     throw std::runtime_error(fmt::format("{}: expected poses of lilod, found none", path));
   }

@@ -23,13 +23,14 @@ struct PoseStream {
   std::vector<SaidPose> poses;
 };
 
-/// Whether the first character of a file that is not blank begins a JSON object. Throws
-/// std::runtime_error when the file cannot be read.
+/// Whether a file is called *.mcap, or its first character that is not blank begins a JSON object.
+/// Throws std::runtime_error when the file cannot be read.
 bool is_pose_stream(const std::string& path);
 
-/// Reads what `lilo run --poses` writes, or recorded datagrams of daemon/PROTOCOL.md: one a line.
-/// Those that are no pose are left out, as are empty lines. Times must grow. Throws
-/// std::runtime_error, one line, "file:line: ...".
+/// Reads what `lilo run --poses` and `lilo record` write, datagrams of daemon/PROTOCOL.md: one a
+/// line, or one a message of an MCAP file. Those that are no pose are left out, as are empty lines
+/// and other topics. Times must grow. Throws std::runtime_error, one line, "file:line: ..."; the
+/// messages of an MCAP file are counted instead of its lines.
 PoseStream read_pose_stream(const std::string& path);
 
 /// The poses alone.

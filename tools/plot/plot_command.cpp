@@ -168,8 +168,8 @@ void add_plot_command(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("plot", "Draw trajectories on their map, or one scan");
   sub->add_option(
       "TRAJECTORY", options->trajectories,
-      "TUM or KITTI poses, or recorded datagrams, which tell status and sessions; the map is "
-      "the first's");
+      "TUM or KITTI poses, or what lilo run --poses or lilo record wrote, which tells status and "
+      "sessions; the map is the first's");
   auto* truth = sub->add_option(
       "--truth", options->truth,
       "True poses, laid over the first trajectory's start; or the folder of a data set");
