@@ -28,9 +28,13 @@ json complaints_of(const json& health) {
   return out;
 }
 
-/// Rows are ASCII but for the bars, which are made to measure.
+/// Rows are ASCII but for the bars, which are made to measure. Of a row that is cut the last column
+/// says so, as less(1) does.
 StatusRow fitted(StatusRow row, std::size_t columns) {
-  row.text.resize(std::min(row.text.size(), columns - std::min(columns, kLabelColumns)));
+  const std::size_t room = columns - std::min(columns, kLabelColumns);
+  if (row.text.size() <= room) return row;
+  row.text.resize(room);
+  if (room > 0) row.text.back() = '>';
   return row;
 }
 
