@@ -249,7 +249,7 @@ class Recorded(WithPrograms):
         file.write_bytes(b"\x89MCAP0\r\n\x05")
         view, browser = self.view(file), self.browser(400, 300)
         browser.open(view.url)
-        browser.wait("document.body.innerText.includes('byte 8: ends early')")
+        browser.wait("document.body?.innerText.includes('byte 8: ends early')")
 
 
 class Access(WithPrograms):
