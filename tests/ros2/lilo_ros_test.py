@@ -176,6 +176,24 @@ class LiloRos(unittest.TestCase):
         bridge.rclpy.ok = lambda: True
         self.assertEqual(self.on("/diagnostics")[0].status[0].level, b"\x03")
 
+    def test_another_protocol_is_an_error_and_not_the_end(self):
+        self.run_bridge()
+        bridge.QUIET_S = 0.0
+
+        class Other:
+            def messages(self, timeout_s):
+                raise lilo_client.VersionError("lilod at x speaks protocol 3.0")
+        self.node._client = Other()
+        self.node._client.close = lambda: None
+        answers = iter([True, True, False])
+        bridge.rclpy.ok = lambda: next(answers)
+        self.node.run()
+        bridge.rclpy.ok = lambda: True
+        statuses = [message.status[0] for message in self.on("/diagnostics")]
+        self.assertEqual([status.level for status in statuses], [b"\x02", b"\x02"])
+        self.assertEqual(statuses[0].message, "lilod at x speaks protocol 3.0")
+        self.assertEqual(len(stand_ins.logged), 1)
+
     def test_inverse_and_product_of_transforms(self):
         T = transform.Transform((1.0, 2.0, 3.0), (0.5, 0.5, 0.5, 0.5))
         same = T @ T.inverse()

@@ -97,7 +97,7 @@ class Node:
             to_msg=lambda: Message(sec=1, nanosec=2)))
 
     def get_logger(self):
-        return types.SimpleNamespace(warning=logged.append)
+        return types.SimpleNamespace(warning=logged.append, error=logged.append)
 
     def destroy_node(self):
         pass

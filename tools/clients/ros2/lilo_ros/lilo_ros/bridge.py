@@ -4,7 +4,7 @@ import time
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from lilo_client import LiloClient
+from lilo_client import LiloClient, VersionError
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -43,6 +43,8 @@ class Bridge(Node):
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
         self._session = None
+        self._heard = time.monotonic()
+        self._complained_of = ""
         self._waiting_for = None  # the transform that is missing, once it was complained of
 
     def _value(self, name):
@@ -62,15 +64,28 @@ class Bridge(Node):
 
     def run(self):
         """Until the node ends. On a thread of its own: publishing is safe from any."""
-        heard = time.monotonic()
         while rclpy.ok():
-            for message in self._client.messages(timeout_s=QUIET_S):
-                heard = time.monotonic()
-                self.take(message)
-                if not rclpy.ok():
-                    return
-            self._diagnostics.publish(messages.stale_diagnostics(
-                self.get_clock().now().to_msg(), self._where, time.monotonic() - heard))
+            try:
+                self._follow()
+            except VersionError as error:  # until lilod or this package is another
+                self._complain(str(error))
+                time.sleep(QUIET_S)
+
+    def _follow(self):
+        for message in self._client.messages(timeout_s=QUIET_S):
+            self._heard = time.monotonic()
+            self.take(message)
+            if not rclpy.ok():
+                return
+        self._diagnostics.publish(messages.stale_diagnostics(
+            self.get_clock().now().to_msg(), self._where, time.monotonic() - self._heard))
+
+    def _complain(self, text):
+        if text != self._complained_of:
+            self.get_logger().error(text)
+        self._complained_of = text
+        self._diagnostics.publish(messages.error_diagnostics(
+            self.get_clock().now().to_msg(), self._where, text))
 
     def take(self, message):
         """One datagram of lilod."""

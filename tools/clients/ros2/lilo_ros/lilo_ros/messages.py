@@ -83,3 +83,7 @@ def health_diagnostics(stamp, health, hardware_id, session):
 def stale_diagnostics(stamp, hardware_id, quiet_s):
     return diagnostics(stamp, DiagnosticStatus.STALE, f"no word from lilod for {quiet_s:.0f} s",
                        hardware_id, [])
+
+
+def error_diagnostics(stamp, hardware_id, text):
+    return diagnostics(stamp, DiagnosticStatus.ERROR, text, hardware_id, [])
