@@ -1,4 +1,5 @@
 """lilo_ros against stand-ins for ROS 2, message by message: lilo_ros_test.py FOLDER_OF_CLIENTS"""
+import importlib.util
 import math
 import os
 import sys
@@ -193,6 +194,33 @@ class LiloRos(unittest.TestCase):
         self.assertEqual([status.level for status in statuses], [b"\x02", b"\x02"])
         self.assertEqual(statuses[0].message, "lilod at x speaks protocol 3.0")
         self.assertEqual(len(stand_ins.logged), 1)
+
+    def launched(self, **given):
+        """The parameters that the launch file gives the bridge."""
+        path = os.path.join(PACKAGE, "launch", "lilo.launch.py")
+        spec = importlib.util.spec_from_file_location("lilo_launch", path)
+        file = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(file)
+        (actions,) = file.generate_launch_description().positional
+        context = {action.positional[0]: given.get(action.positional[0], action.default_value)
+                   for action in actions[:-1]}
+        (node,) = actions[-1].function(context)
+        self.assertEqual((node.package, node.executable), ("lilo_ros", "bridge"))
+        file, *values = node.parameters
+        return file.perform(context), values
+
+    def test_the_launch_file_leaves_the_parameters_file_alone(self):
+        self.assertEqual(self.launched(), ("/share/lilo_ros/config/lilo.yaml", []))
+        self.assertEqual(self.launched(params_file="/my.yaml"), ("/my.yaml", []))
+
+    def test_arguments_of_the_launch_file_are_parameters(self):
+        _, (values,) = self.launched(host="10.0.0.2", port="9881", odom_topic="o", odom_frame="f",
+                                     base_frame="base_link", publish_tf="False")
+        self.assertEqual(values, {"host": "10.0.0.2", "port": 9881, "odom_topic": "o",
+                                  "odom_frame": "f", "base_frame": "base_link",
+                                  "publish_tf": False})
+        for name, value in values.items():
+            self.assertIs(type(value), type(bridge.PARAMETERS[name]))
 
     def test_inverse_and_product_of_transforms(self):
         T = transform.Transform((1.0, 2.0, 3.0), (0.5, 0.5, 0.5, 0.5))

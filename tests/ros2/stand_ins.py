@@ -126,7 +126,30 @@ def module(name, **content):
     sys.modules[name].__dict__.update(content)
 
 
+class Launched(Message):
+    """An action or a description of ROS 2's launch: how it was made."""
+
+    def __init__(self, *positional, **named):
+        super().__init__(positional=positional, **named)
+
+
+class LaunchConfiguration(Launched):
+    def perform(self, context):
+        return context[self.positional[0]]
+
+
+def install_launch():
+    module("launch", LaunchDescription=Launched)
+    module("launch.actions", DeclareLaunchArgument=Launched, OpaqueFunction=Launched)
+    module("launch.substitutions", LaunchConfiguration=LaunchConfiguration)
+    module("launch_ros")
+    module("launch_ros.actions", Node=Launched)
+    module("ament_index_python")
+    module("ament_index_python.packages", get_package_share_directory=lambda name: "/share/" + name)
+
+
 def install():
+    install_launch()
     module("rclpy", init=lambda: None, ok=lambda: True, spin=lambda node: None,
            try_shutdown=lambda: None)
     module("rclpy.node", Node=Node)
