@@ -3,6 +3,7 @@
 
 #include "core/odometry.hpp"
 #include "tests/core/analytic_scene.hpp"
+#include "tests/core/profiles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -141,7 +142,7 @@ TEST_F(InParts, WithPacketsThatWereOvertaken) {
 
 // The daemon's way and that of the tools.
 TEST(FeatureExtractor, MakesTheSameTrajectoryInParts) {
-  for (const Profile profile : {Profile::default_profile, Profile::paper}) {
+  for (const Profile profile : test::profiles()) {
     OdometryConfig config;
     config.profile = profile;
     Odometry whole(config), in_parts(config);

@@ -1,5 +1,6 @@
 #include "core/odometry.hpp"
 #include "tests/core/analytic_scene.hpp"
+#include "tests/core/profiles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,8 +35,7 @@ TEST_P(MapPoints, LieOnTheScene) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Profiles, MapPoints,
-                         testing::Values(Profile::default_profile, Profile::paper),
+INSTANTIATE_TEST_SUITE_P(Profiles, MapPoints, testing::ValuesIn(test::profiles()),
                          [](const auto& test) {
                            return test.param == Profile::paper ? "paper" : "default";
                          });

@@ -3,6 +3,7 @@
 #include "core/motion/trajectory.hpp"
 #include "core/odometry.hpp"
 #include "tests/core/analytic_scene.hpp"
+#include "tests/core/profiles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -296,7 +297,7 @@ TEST(Trajectory, IsTheCubicThroughItsKnots) {
 
 // The computer's clock is set while the robot drives: stamps jump, the sensor did not.
 TEST(DefaultProfile, AStepOfTheClockBendsNothing) {
-  for (const Profile profile : {Profile::default_profile, Profile::paper}) {
+  for (const Profile profile : test::profiles()) {
     OdometryConfig config;
     config.profile = profile;
     Odometry steady(config), stepped(config);

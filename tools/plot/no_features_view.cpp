@@ -1,0 +1,12 @@
+// For builds without profile paper.
+#include "tools/plot/features_view.hpp"
+
+#include <stdexcept>
+
+namespace lilo {
+
+Canvas draw_features(const Scan&, const OdometryConfig&, const std::string&) {
+  throw std::runtime_error("--features: this build has no profile paper");
+}
+
+}  // namespace lilo
