@@ -5,12 +5,6 @@
 set(LILO_MAINTAINER "lilod maintainers <maintainers@lilod.invalid>" CACHE STRING "Whom packages name")
 set(LILO_HOMEPAGE "" CACHE STRING "Where the project lives; packages name it when it is set")
 
-# One version: project() in CMakeLists.txt says it, and the newest entry of the changelog follows.
-file(STRINGS debian/changelog changelog LIMIT_COUNT 1)
-if(NOT changelog MATCHES "\\(${PROJECT_VERSION}\\)")
-  message(FATAL_ERROR "debian/changelog begins with \"${changelog}\", the project's version is ${PROJECT_VERSION}")
-endif()
-
 install(DIRECTORY ${manuals}/lilod/ DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT lilod OPTIONAL)
 install(DIRECTORY ${manuals}/lilo-tools/ DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT lilo-tools
   OPTIONAL)
