@@ -50,6 +50,10 @@ void FeatureExtractor::finish(const Scan& scan, ScanFeatures& out) {
   if (impl_->invalidated) impl_->taken = 0;
   impl_->take(scan, scan.returns.size());
   std::swap(impl_->image.finish(scan), out.all);
+  give_up();
+}
+
+void FeatureExtractor::give_up() {
   impl_->taken = 0;
   impl_->invalidated = false;
 }

@@ -28,6 +28,8 @@ class FeatureExtractor {
   /// The scan is whole: takes the rest, and `out` becomes its features. The next call is about
   /// another scan.
   void finish(const Scan& scan, ScanFeatures& out);
+  /// Nobody wants the features of the scan being followed: the next call is about another one.
+  void give_up();
 
  private:
   struct Impl;

@@ -19,7 +19,7 @@
 namespace lilo {
 
 struct ScanSlot {
-  Scan scan;
+  Scan scan;                        ///< without returns, unless the profile needs them: paper
   ScanFeatures features;            ///< of the whole scan
   std::int64_t extraction_ns = 0;   ///< the receiver's time for them
   std::int64_t last_packet_ns = 0;  ///< monotonic time at which the packet that ended it arrived

@@ -24,6 +24,14 @@ std::int64_t arrival_ns(const PacketView& packet) {
   return monotonic_ns() - (age > 0 && age < kLongestQueueNs ? age : 0);
 }
 
+// Profile default looks at features alone.
+bool needs_returns(const OdometryConfig& config) { return config.profile == Profile::paper; }
+
+const SensorTable& table_of(SensorModel model) {
+  const SensorTable* known = find_sensor(model);
+  return known != nullptr ? *known : *find_sensor(SensorModel::vlp16);
+}
+
 }  // namespace
 
 Receiver::Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sensor,
@@ -34,10 +42,10 @@ Receiver::Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sen
       scan_ready_(scan_ready),
       counters_(counters),
       packets_(packets),
-      writing_(scans.reserve()),
+      needs_returns_(needs_returns(odometry)),
       extractor_(odometry),
-      builder_(sensor, writing_->scan, *this) {
-  prepare_slot(spare_, sensor.model, odometry);
+      builder_(sensor, scan_, *this) {
+  prepare_scan(scan_, sensor.model);
 }
 
 void Receiver::share_state() {
@@ -92,58 +100,62 @@ void Receiver::copy(const PacketView& packet) {
 
 void Receiver::follow_scan() {
   const std::int64_t start_ns = monotonic_ns();
-  extractor_.follow(writing_->scan);
-  writing_->extraction_ns += monotonic_ns() - start_ns;
+  extractor_.follow(scan_);
+  extraction_ns_ += monotonic_ns() - start_ns;
 }
 
-// The scan just written goes to the worker, and the next free slot is written. With all slots
-// taken, the spare one is written instead and the worker told; should it still be at work when the
-// spare is full too, that scan is given up.
 Scan& Receiver::exchange(Scan& finished) {
-  const std::int64_t start_ns = monotonic_ns();
-  extractor_.finish(finished, writing_->features);
-  writing_->extraction_ns += monotonic_ns() - start_ns;
-  most_returns_ = std::max(most_returns_, finished.returns.size());
+  const std::int64_t now_ns = monotonic_ns();
+  last_scan_ns_.store(now_ns, std::memory_order_relaxed);
   add(counters_.scans_received);
-  last_scan_ns_.store(start_ns, std::memory_order_relaxed);
-  writing_->last_packet_ns = last_packet_ns_.load(std::memory_order_relaxed);
-  ScanSlot* slot = writing_;
-  if (writing_ == &spare_) {
-    slot = scans_.reserve();
-    if (slot != nullptr) std::swap(*slot, spare_);
-  }
-  if (slot != nullptr) {
+  if (ScanSlot* const slot = scans_.reserve(); slot != nullptr) {
+    extractor_.finish(finished, slot->features);
+    slot->extraction_ns = extraction_ns_ + monotonic_ns() - now_ns;
+    hand_on(finished, *slot);
     scans_.commit();
     if (scans_.size() > counters_.ring_high_water) counters_.ring_high_water = scans_.size();
     scan_ready_.signal();
   } else {
+    extractor_.give_up();
     add(counters_.scans_overrun);
   }
+  if (scans_.reserve() == nullptr) counters_.behind.store(true, std::memory_order_release);
   share_state();
-  writing_ = scans_.reserve();
-  if (writing_ == nullptr) {
-    counters_.behind.store(true, std::memory_order_release);
-    writing_ = &spare_;
+  finished.clear();
+  extraction_ns_ = 0;
+  return finished;
+}
+
+void Receiver::hand_on(Scan& finished, ScanSlot& slot) {
+  slot.last_packet_ns = last_packet_ns_.load(std::memory_order_relaxed);
+  most_returns_ = std::max(most_returns_, finished.returns.size());
+  if (needs_returns_) {
+    std::swap(finished, slot.scan);
+    // What the largest scan so far needed: one that has to grow by itself would double.
+    finished.returns.clear();
+    if (finished.returns.capacity() < most_returns_)
+      finished.returns.reserve(most_returns_ + most_returns_ / 32);
+    return;
   }
-  writing_->scan.clear();
-  writing_->extraction_ns = 0;
-  // What the largest scan so far needed: one that has to grow by itself would double.
-  if (writing_->scan.returns.capacity() < most_returns_)
-    writing_->scan.returns.reserve(most_returns_ + most_returns_ / 32);
-  return writing_->scan;
+  Returns returns = std::move(finished.returns);
+  slot.scan = finished;
+  finished.returns = std::move(returns);
+}
+
+void prepare_scan(Scan& scan, SensorModel model) {
+  // One return a firing at 10 Hz, and a fifth more. What an unknown model, dual returns or a slower
+  // head need more, the scan takes in its first turn and keeps.
+  constexpr double kTurnNs = 120e6;
+  const SensorTable& sensor = table_of(model);
+  const double cycles = kTurnNs / sensor.times.front().cycle_ns;
+  // With a value: a resize() alone leaves Returns untouched.
+  scan.returns.assign(static_cast<std::size_t>(cycles * sensor.lasers), Return{});
+  scan.clear();
 }
 
 void prepare_slot(ScanSlot& slot, SensorModel model, const OdometryConfig& odometry) {
-  // One return a firing at 10 Hz, and a tenth more. What an unknown model, dual returns or a slower
-  // head need more, the slots take in their first turn and keep.
-  constexpr double kTurnNs = 110e6;
-  const SensorTable* known = find_sensor(model);
-  const SensorTable& sensor = known != nullptr ? *known : *find_sensor(SensorModel::vlp16);
-  const double cycles = kTurnNs / sensor.times.front().cycle_ns;
-  // With a value: a resize() alone leaves Returns untouched.
-  slot.scan.returns.assign(static_cast<std::size_t>(cycles * sensor.lasers), Return{});
-  slot.scan.clear();
-  slot.features.all.resize(most_features(odometry, sensor.lasers));
+  if (needs_returns(odometry)) prepare_scan(slot.scan, model);
+  slot.features.all.resize(most_features(odometry, table_of(model).lasers));
   slot.features.all.clear();
 }
 

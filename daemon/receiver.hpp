@@ -24,10 +24,11 @@ struct ReceiverState {
 };
 
 /// Packets to scans and their features, on a thread of its own. The features are found while the
-/// scan is measured, packet by packet. Writes straight into ring slots. When the worker holds
-/// them all, the receiver writes into a spare one and asks the worker to skip to the newest scan.
-/// While counters.packets_asked, it copies every packet into a ring of its own; should that be
-/// full, the packet is counted and left out.
+/// scan is measured, packet by packet, and go into a slot of the ring when it is whole. The returns
+/// stay here, unless the profile asks for them. A scan that fills the last free slot asks the
+/// worker to skip to the newest one; should there be no slot for the next, it is given up and
+/// counted. While counters.packets_asked, it copies every packet into a ring of its own; should
+/// that be full, the packet is counted and left out.
 class Receiver : private ScanSink {
  public:
   Receiver(std::unique_ptr<PacketSource> source, const SensorConfig& sensor,
@@ -53,6 +54,7 @@ class Receiver : private ScanSink {
   void inserted(std::size_t index) override { extractor_.inserted(index); }
   void copy(const PacketView& packet);
   void follow_scan();
+  void hand_on(Scan& finished, ScanSlot& slot);
   void share_state();
   void share_calibration(const SensorStatus& status);
 
@@ -62,10 +64,11 @@ class Receiver : private ScanSink {
   PipelineCounters& counters_;
   PacketRing* packets_;  // null: nobody may ask
   std::uint64_t packets_read_ = 0;
-  ScanSlot spare_;
-  ScanSlot* writing_;
+  bool needs_returns_;  // the profile
+  Scan scan_;           // being written
   FeatureExtractor extractor_;
-  std::size_t most_returns_ = 0;  // of any scan
+  std::int64_t extraction_ns_ = 0;  // for its features so far
+  std::size_t most_returns_ = 0;    // of any scan
   std::atomic<std::int64_t> last_packet_ns_{0};
   std::atomic<std::int64_t> last_scan_ns_{0};
   Snapshot<ReceiverState> state_;
@@ -75,7 +78,8 @@ class Receiver : private ScanSink {
   ScanBuilder builder_;
 };
 
-/// Reserves and touches the memory that a scan of this sensor and its features need.
+/// Reserve and touch the memory that a scan of this sensor needs, and what the profile wants of it.
+void prepare_scan(Scan& scan, SensorModel model);
 void prepare_slot(ScanSlot& slot, SensorModel model, const OdometryConfig& odometry);
 
 }  // namespace lilo

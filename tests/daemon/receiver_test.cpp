@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <sys/resource.h>
@@ -24,11 +25,23 @@ std::unique_ptr<PacketSource> turns(int turns) {
   return std::make_unique<RoundRoomSource>(static_cast<std::uint64_t>(packets));
 }
 
-/// Those found while the scan was measured are those of the scan as it lies in the slot.
-void expect_features_of_whole_scan(const ScanSlot& slot) {
+/// The scans of a source, with their returns, as profile paper asks for them.
+std::map<std::uint64_t, Scan> whole_scans(std::unique_ptr<PacketSource> source) {
+  ScanRing scans(32);
+  Wakeup ready(Wakeup::Mode::blocking);
+  PipelineCounters counters;
+  Receiver(std::move(source), kVlp16, {.profile = Profile::paper}, scans, ready, counters).run();
+  std::map<std::uint64_t, Scan> whole;
+  for (; const ScanSlot* slot = scans.front(); scans.release())
+    whole[slot->scan.index] = slot->scan;
+  return whole;
+}
+
+/// Those found while the scan was measured are those of the scan as a whole.
+void expect_features_of(const Scan& scan, const ScanSlot& slot) {
   FeatureExtractor extractor{OdometryConfig{}};
   ScanFeatures whole;
-  extractor.finish(slot.scan, whole);
+  extractor.finish(scan, whole);
   EXPECT_GT(whole.all.size(), 10'000U);
   ASSERT_EQ(slot.features.all.size(), whole.all.size()) << "scan " << slot.scan.index;
   const auto same = [](const Feature& a, const Feature& b) {
@@ -53,15 +66,19 @@ TEST(Receiver, HandsOnEveryScanInOrder) {
   EXPECT_FALSE(counters.behind);
   std::uint64_t index = scans.front()->scan.index;
   std::int64_t end_ns = 0;
+  const auto whole = whole_scans(turns(12));
+  EXPECT_EQ(whole.size(), scans.size());
   while (const ScanSlot* slot = scans.front()) {
     EXPECT_EQ(slot->scan.index, index++);
     EXPECT_TRUE(slot->scan.complete);
-    EXPECT_NEAR(static_cast<double>(slot->scan.returns.size()), 0.1e9 / 55296.0 * 16, 64);
+    const Scan& scan = whole.at(slot->scan.index);
+    EXPECT_NEAR(static_cast<double>(scan.returns.size()), 0.1e9 / 55296.0 * 16, 64);
+    EXPECT_TRUE(slot->scan.returns.empty()) << "profile default has no use for them";
     EXPECT_GT(slot->scan.start_ns, end_ns);
     EXPECT_NEAR(static_cast<double>(slot->scan.end_ns - slot->scan.start_ns), 0.1e9, 0.2e6);
     EXPECT_GE(slot->last_packet_ns, before);
     EXPECT_LE(slot->last_packet_ns, monotonic_ns());
-    expect_features_of_whole_scan(*slot);
+    expect_features_of(scan, *slot);
     end_ns = slot->scan.end_ns;
     scans.release();
   }
@@ -137,18 +154,20 @@ class InterruptedSource : public PacketSource {
   std::function<void()> act_;
 };
 
-// The worker wakes up after 6.5 turns and empties the ring: the scan being written into the spare
-// slot then gets in, whole, and the stream goes on without a gap.
+// The worker wakes up after 6.5 turns and empties the ring: the scan being written
+// then gets in, whole, and the stream goes on without a gap.
 TEST(Receiver, GoesOnWithTheNewestScan) {
   ScanRing scans(3);
   Wakeup ready(Wakeup::Mode::blocking);
   PipelineCounters counters;
   std::vector<std::uint64_t> taken;
+  const auto whole = whole_scans(turns(9));
   const auto take_all = [&] {
     while (const ScanSlot* slot = scans.front()) {
       taken.push_back(slot->scan.index);
       EXPECT_TRUE(slot->scan.complete);
-      expect_features_of_whole_scan(*slot);  // of no scan that was given up half-way
+      expect_features_of(whole.at(slot->scan.index),
+                         *slot);  // of no scan that was given up half-way
       scans.release();
     }
   };
@@ -201,8 +220,9 @@ TEST(Receiver, FindsTheFeaturesOfPacketsThatWereOvertaken) {
   receiver.run();
   ASSERT_GE(scans.size(), 10U);
   std::uint32_t overtaken = 0;
+  const auto whole = whole_scans(std::make_unique<OvertakingSource>(turns(12)));
   while (const ScanSlot* slot = scans.front()) {
-    expect_features_of_whole_scan(*slot);
+    expect_features_of(whole.at(slot->scan.index), *slot);
     overtaken += slot->scan.packets.reordered;
     scans.release();
   }
@@ -256,15 +276,24 @@ long minor_faults() {
 
 // Memory that is only reserved comes when it is first written: 820 page faults in the middle of the
 // first scans.
-TEST(PrepareSlot, TouchesWhatAScanNeeds) {
+TEST(PrepareScan, TouchesWhatAScanNeeds) {
+  Scan scan;
+  prepare_scan(scan, SensorModel::hdl64e);
+  EXPECT_TRUE(scan.returns.empty());
+  EXPECT_GE(scan.returns.capacity(), 133'333U);  // a turn at 10 Hz
+  const long before = minor_faults();
+  scan.returns.assign(scan.returns.capacity(), Return{});
+  EXPECT_LT(minor_faults() - before, 20);
+}
+
+TEST(PrepareSlot, TouchesWhatFeaturesNeed) {
   ScanSlot slot;
   prepare_slot(slot, SensorModel::hdl64e, OdometryConfig{});
-  auto& returns = slot.scan.returns;
   auto& features = slot.features.all;
-  EXPECT_TRUE(returns.empty() && features.empty());
-  EXPECT_GE(returns.capacity(), 133'333U);  // a turn at 10 Hz
+  EXPECT_TRUE(features.empty());
+  EXPECT_GE(features.capacity(), 36'864U);  // 64 x 576
+  EXPECT_EQ(slot.scan.returns.capacity(), 0U);
   const long before = minor_faults();
-  returns.assign(returns.capacity(), Return{});
   features.assign(features.capacity(), Feature{});
   EXPECT_LT(minor_faults() - before, 20);
 }

@@ -147,7 +147,8 @@ TEST_P(ReceiverAndWorker, MakeThePosesOfOneThread) {
   for (const PoseReport* report = reports.front(); report != nullptr; report = reports.front()) {
     const Estimate& found = report->estimate;
     while (all.front()->scan.index != found.scan_index) all.release();
-    const Estimate expected = odometry.process(all.front()->scan);
+    const Estimate expected = odometry.align(all.front()->scan, all.front()->features);
+    odometry.update_map(all.front()->features);
     EXPECT_EQ(found.T_odom_sensor.translation_m, expected.T_odom_sensor.translation_m);
     EXPECT_EQ(found.T_odom_sensor.rotation.coeffs(), expected.T_odom_sensor.rotation.coeffs());
     EXPECT_EQ(found.twist.linear_mps, expected.twist.linear_mps);
