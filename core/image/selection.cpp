@@ -13,7 +13,7 @@ Selection::Selection(int ground_goal, int structure_goal)
       taken_(std::bit_ceil(static_cast<std::size_t>(ground_goal + structure_goal) * 4)),
       mask_(taken_.size() - 1) {
   chosen_.reserve(taken_.size() / 2);
-  picked_.reserve(FeatureImage::kMostPixels);
+  voxels_.reserve(FeatureImage::kMostPixels);
 }
 
 std::size_t Selection::golden_stride(std::size_t size) {
@@ -29,7 +29,7 @@ std::uint64_t Selection::voxel_of(const Feature& f, float per_m) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(v_m * per_m + kOffset)) & 0xFFFFU;
   };
   return 1U + (part(f.x_m) | part(f.y_m) << 16U | part(f.z_m) << 32U |
-               static_cast<std::uint64_t>(f.kind) << 48U);
+               static_cast<std::uint64_t>(f.kind) << kKindBit);
 }
 
 bool Selection::take(std::uint64_t voxel) {
@@ -56,22 +56,31 @@ bool Selection::take_evenly(const std::vector<Feature>& all, bool with_overhead)
   std::array<int, kKinds> count{}, offered{};
   const std::array<float, kKinds> per_m{1.0F / voxel_m_[0], 1.0F / voxel_m_[1]};
   bool done = true;
-  picked_.assign(all.size(), 0);
-  const std::size_t stride = golden_stride(all.size());
-  for (std::size_t n = 0, at = 0; n < all.size(); ++n, at = (at + stride) % all.size()) {
-    const Feature& f = all[at];
-    if (!with_overhead && is_overhead(f)) continue;
+  // First all voxels in the order of the memory, then far apart: there is little to wait for.
+  voxels_.resize(all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Feature& f = all[k];
     const auto kind = static_cast<std::size_t>(f.kind);
-    ++offered[kind];
+    const bool left_out = !with_overhead && is_overhead(f);
+    voxels_[k] = left_out ? kLeftOut : voxel_of(f, per_m[kind]);
+    offered[kind] += static_cast<int>(!left_out);
+  }
+  const std::size_t stride = golden_stride(all.size());
+  for (std::size_t n = 0, at = 0; n < all.size(); ++n) {
+    std::uint64_t& voxel = voxels_[at];
+    at += stride;  // less than all.size(): no division a feature
+    if (at >= all.size()) at -= all.size();
+    if (voxel == kLeftOut) continue;
+    const std::size_t kind = kind_of(voxel);
     if (count[kind] >= 2 * goal_[kind]) {
       done = false;
-    } else if (take(voxel_of(f, per_m[kind]))) {
+    } else if (take(voxel)) {
       ++count[kind];
-      picked_[at] = 1;
+      voxel = kPicked;
     }
   }
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (picked_[k] != 0) chosen_.push_back(all[k]);
+    if (voxels_[k] == kPicked) chosen_.push_back(all[k]);
   }
   for (std::size_t k = 0; k < kKinds; ++k) {
     // On surfaces the number goes with the inverse square of the voxel; 0.35 instead of 0.5 damps.

@@ -32,7 +32,11 @@ class Selection {
 
  private:
   static constexpr int kKinds = 2;
+  /// What voxels_ holds instead of a voxel.
+  static constexpr std::uint64_t kLeftOut = 0, kPicked = ~std::uint64_t{0};
+  static constexpr int kKindBit = 48;
   [[nodiscard]] static std::uint64_t voxel_of(const Feature& f, float per_m);
+  [[nodiscard]] static std::size_t kind_of(std::uint64_t voxel) { return (voxel - 1) >> kKindBit; }
   /// False when a goal was reached twice over before the end, or not even half though there is
   /// more. Adapts the voxels in any case.
   bool take_evenly(const std::vector<Feature>& all, bool with_overhead);
@@ -42,7 +46,7 @@ class Selection {
   std::array<float, kKinds> voxel_m_{1.0F, 0.5F};
   std::vector<std::uint64_t> taken_;  // hash set of voxels, 0: empty
   std::size_t mask_;
-  std::vector<std::uint8_t> picked_;  // of each feature
+  std::vector<std::uint64_t> voxels_;  // of each feature
   std::vector<Feature> chosen_;
 };
 
