@@ -2,7 +2,6 @@
 #include "config/key.hpp"
 #include "config/yaml_reader.hpp"
 #include "core/map/local_maps.hpp"
-#include "core/odometry.hpp"
 
 #include <fmt/format.h>
 
@@ -112,8 +111,6 @@ std::vector<Contradiction> contradictions(const Config& c) {
                       c.odometry.max_range_m, c.odometry.min_range_m));
   require(c.udp.data_port != c.udp.position_port, {"udp.position_port", "udp.data_port"},
           fmt::format("expected another port than udp.data_port, found {}", c.udp.position_port));
-  require(has_profile(c.odometry.profile), {"odometry.profile"},
-          "expected default, as this build has no profile paper, found paper");
   require(!c.udp.share_ports || !c.udp.sensor_address.empty(),
           {"udp.share_ports", "udp.sensor_address"},
           "expected udp.sensor_address too: whose packets are this lilod's, found none");

@@ -29,7 +29,7 @@ AnyProfile make_profile(const OdometryConfig& config) {
 #ifdef LILO_PAPER
   return paper::PaperOdometry(config);
 #else
-  throw std::invalid_argument("odometry.profile: this build has no profile paper");
+  throw std::invalid_argument("odometry.profile: this program has no profile paper");
 #endif
 }
 

@@ -13,14 +13,14 @@
 
 namespace lilo {
 
-/// Whether this build has the profile: `paper` needs OpenCV and PCL and can be left out.
+/// Whether this program has the profile: `paper` needs OpenCV and PCL, and lilod is without.
 bool has_profile(Profile profile);
 
 /// LiDAR odometry: scans in, poses out. Same scans, same bits out.
 /// Not thread-safe: one thread calls.
 class Odometry {
  public:
-  /// Throws std::invalid_argument when the build lacks the profile.
+  /// Throws std::invalid_argument when the program lacks the profile.
   explicit Odometry(const OdometryConfig& config);
   ~Odometry();
   Odometry(const Odometry&) = delete;

@@ -1,8 +1,10 @@
 #include "config/config.hpp"
 #include "config/print_config.hpp"
 #include "config/version.hpp"
+#include "core/odometry.hpp"
 #include "daemon/health_monitor.hpp"
 #include "daemon/log.hpp"
+#include "daemon/paper_program.hpp"
 #include "daemon/service.hpp"
 
 #include <CLI/CLI.hpp>
@@ -25,7 +27,7 @@ struct Options {
   bool print_reference = false;
 };
 
-int run(const Options& options) {
+int run(const Options& options, char** argv) {
   if (options.print_reference) {
     std::cout << print_reference();
     return kSuccess;
@@ -36,6 +38,8 @@ int run(const Options& options) {
     return kSuccess;
   }
   const Config config = load_config(options.config_path);
+  if (!has_profile(config.odometry.profile))
+    throw ConfigError(options.config_path + ": " + become_paper_program(argv));
   if (options.print_config) std::cout << print_config(config);
   if (options.check_config) std::cout << options.config_path << ": ok\n";
   if (options.print_config || options.check_config) return kSuccess;
@@ -54,7 +58,7 @@ int run(int argc, char** argv) {
   app.add_flag("--print-reference", options.print_reference, "Print all keys as Markdown, and end");
   try {
     app.parse(argc, argv);
-    return run(options);
+    return run(options, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {

@@ -1,11 +1,15 @@
 #include "config/config.hpp"
 #include "config/print_config.hpp"
+#include "core/odometry.hpp"
 #include "tests/daemon/lilod_fixture.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace lilo {
 namespace {
@@ -96,6 +100,39 @@ TEST(CommandLine, StopsOnSigtermAndSaysSo) {
   ASSERT_TRUE(lilod.wait_ready());
   EXPECT_EQ(lilod.stop(), 0) << lilod.process().standard_error();
   EXPECT_TRUE(lilod.systemd().wait_for("STOPPING=1", std::chrono::seconds(1)));
+}
+
+/// Files that the process has in its memory: its program first, then libraries.
+std::string mapped_files(const ChildProcess& process) {
+  std::ifstream maps("/proc/" + std::to_string(process.pid()) + "/maps");
+  return {std::istreambuf_iterator<char>(maps), {}};
+}
+
+TEST(Paper, HasAProgramOfItsOwn) {
+  if (!has_profile(Profile::paper)) GTEST_SKIP() << "this build has no profile paper";
+  Lilod usual;
+  ASSERT_TRUE(usual.wait_ready());
+  EXPECT_EQ(mapped_files(usual.process()).find("libopencv"), std::string::npos);
+  Lilod paper("odometry: {profile: paper}\n");
+  ASSERT_TRUE(paper.wait_ready());
+  const std::string files = mapped_files(paper.process());
+  EXPECT_NE(files.find("/libexec/lilod/lilod-paper\n"), std::string::npos);
+  EXPECT_NE(files.find("libopencv"), std::string::npos);
+}
+
+TEST(Paper, IsMissedInOneLine) {
+  const std::string folder = unique_path("alone");
+  std::filesystem::create_directories(folder + "/sbin");
+  std::filesystem::copy(kLilod, folder + "/sbin/lilod");
+  const TemporaryFile file("paper.yaml", "odometry: {profile: paper}\n");
+  const Finished run = run_to_end({folder + "/sbin/lilod", "--config", file.path()});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.error, file.path() +
+                           ": odometry.profile: expected default, or paper and the program " +
+                           folder +
+                           "/libexec/lilod/lilod-paper (package lilo-tools), found paper "
+                           "and: No such file or directory\n");
+  std::filesystem::remove_all(folder);
 }
 
 // What the system refuses is a loud warning, never the end.
