@@ -63,7 +63,7 @@ struct RealtimeConfig {
   int worker_cpu = -1;       ///< pin the worker here; -1: do not pin
   int worker_priority = 0;   ///< SCHED_FIFO priority; 0: the normal policy
   bool lock_memory = false;  ///< mlockall
-  int reserve_mb = 8;        ///< heap held beforehand when memory is locked
+  int reserve_mb = 1;        ///< heap held beforehand when memory is locked
   int ring_slots = 4;        ///< scans the ring can hold
 };
 

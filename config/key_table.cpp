@@ -303,7 +303,7 @@ std::vector<Key> realtime_keys() {
       boolean("realtime.lock_memory", LILO_MEMBER(realtime.lock_memory), kRestart,
               "Locks all memory (mlockall), so that no page fault delays a pose."),
       integer("realtime.reserve_mb", LILO_MEMBER(realtime.reserve_mb), 0, 4096, "", kRestart,
-              "With lock_memory: memory held beforehand for the map to grow into (MiB)."),
+              "With lock_memory: memory held for requests; a map to save is copied first (MiB)."),
       integer("realtime.ring_slots", LILO_MEMBER(realtime.ring_slots), 3, 64, "scans", kRestart,
               "Scans that may wait for the odometry thread. When all are taken, the oldest are "
               "dropped and counted."),

@@ -66,7 +66,7 @@ struct DefaultConfig {
   int structure_features = 1100;  ///< everything that is not ground
   int map_features = 6000;        ///< features a keyframe adds to the map, at most
   double cell_m = 0.5;            ///< map cell; a distribution spans three of them
-  int map_cells = 120000;         ///< fine cells of each kind, which bounds the memory
+  int map_cells = 80000;          ///< fine cells of each kind, which bounds the memory
   double map_radius_m = 100.0;    ///< farther cells are forgotten
   double keyframe_m = 0.3;        ///< the map grows when the sensor has moved so far
   double keyframe_rad = 2.0 * std::numbers::pi / 180.0;  ///< or turned so far

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kReportSlots = 64;  // 6 s of poses while the publisher is held up
 constexpr std::size_t kPointsSlots = 4;
 constexpr std::size_t kPacketSlots = 1024;  // 1.3 MB: 0.3 s of an HDL-64E
-constexpr std::size_t kThreadStackBytes = 1 << 20;
+constexpr std::size_t kThreadStackBytes = 512 << 10;
 
 /// What a thread tells of itself before it starts work.
 struct ThreadStart {

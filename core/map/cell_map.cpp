@@ -29,7 +29,6 @@ CellMap::CellMap(const CellMapConfig& config)
   const auto capacity = static_cast<std::size_t>(config.capacity);
   cells_.reserve(capacity);
   sums_.reserve(capacity);
-  free_.reserve(capacity);
 }
 
 std::int32_t CellMap::make(const CellKey& key) {
@@ -38,12 +37,12 @@ std::int32_t CellMap::make(const CellKey& key) {
     return kNone;
   }
   auto at = static_cast<std::int32_t>(cells_.size());
-  if (free_.empty()) {
+  if (free_ == kNone) {
     cells_.emplace_back();
     sums_.emplace_back();
   } else {
-    at = free_.back();
-    free_.pop_back();
+    at = free_;
+    free_ = next_free(cells_[static_cast<std::size_t>(at)]);
     cells_[static_cast<std::size_t>(at)] = Cell{};
     sums_[static_cast<std::size_t>(at)] = Moments{};
   }
@@ -144,16 +143,18 @@ void CellMap::clear() {
   for (const Cell& cell : cells_) table_.clear_from(table_.bucket_of(cell.index));
   cells_.clear();
   sums_.clear();
-  free_.clear();
+  free_ = kNone;
   used_ = 0;
 }
 
 void CellMap::remove(std::size_t slot) {
-  free_.push_back(table_.slots()[slot].at);
+  const std::int32_t removed = table_.slots()[slot].at;
   --used_;
   table_.remove(slot, [this](std::int32_t at) {
     return table_.bucket_of(cells_[static_cast<std::size_t>(at)].index);
   });
+  next_free(cells_[static_cast<std::size_t>(removed)]) = free_;
+  free_ = removed;
 }
 
 void CellMap::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {

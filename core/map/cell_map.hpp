@@ -186,6 +186,8 @@ class CellMap {
   [[nodiscard]] Moments moments_around(const CellIndex& i) const;
   void fit(Cell& cell) const;
   void remove(std::size_t slot);
+  /// A removed cell has no place; the number of the next one stands there.
+  static std::int32_t& next_free(Cell& removed) { return removed.index.x; }
 
   CellMapConfig config_;
   double per_m_;
@@ -193,7 +195,7 @@ class CellMap {
   CellTable table_;
   std::vector<Cell> cells_;
   std::vector<Moments> sums_;  // what insert() sums, from the cell's centre
-  std::vector<std::int32_t> free_;
+  std::int32_t free_ = kNone;  // the cell removed last; it names the one before
   std::size_t sweep_ = 0;
   std::uint32_t keyframe_ = 1;
   int used_ = 0;
