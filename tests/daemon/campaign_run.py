@@ -11,6 +11,8 @@ import tempfile
 import threading
 import time
 
+import lilod_world
+
 WORST_M, WORST_DEG = 1.0, 3.0
 
 
@@ -199,9 +201,28 @@ def accounts(meta, health):
         bad.append("scans do not add up")
     if scans["processed"] != health["poses_sent"] + health["poses_not_sent"]:
         bad.append("poses do not add up")
+    if packets["foreign"] != meta["foreign_sent"]:
+        bad.append(f"{meta['foreign_sent']} packets of another sensor came, {packets['foreign']} counted")
     if packets["kernel_dropped"] or scans["dropped"]:
         bad.append(f"kernel dropped {packets['kernel_dropped']} packets, we {scans['dropped']} scans")
     return bad
+
+
+class OtherSensors:
+    """They send from addresses of their own while they live, once the one that is followed has begun."""
+
+    def __init__(self, models, port):
+        self.sensors = [lilod_world.Vlp16(port, f"127.0.0.{2 + k}", hdl64e=model == "hdl64e")
+                        for k, model in enumerate(models)]
+        self.timer = threading.Timer(1.0, lambda: [sensor.on() for sensor in self.sensors])
+        self.timer.start()
+
+    def stop(self):
+        """How many packets they have sent."""
+        self.timer.cancel()
+        for sensor in self.sensors:
+            sensor.close()
+        return sum(sensor.sent for sensor in self.sensors)
 
 
 def play(root, folder, meta, speed):
@@ -212,10 +233,14 @@ def play(root, folder, meta, speed):
     try:
         if lilod.wait_health(lambda h: True, 20) is None:
             return {"bad": ["lilod did not start: " + lilod.log.read_text()[-200:]]}
-        replayed = subprocess.run(
-            [root / "build/release/bin/lilo", "replay", folder / "data.pcap", "--speed", str(speed),
-             "--data-port", str(lilod.data_port), "--position-port", str(lilod.position_port)],
-            stdout=subprocess.DEVNULL, timeout=60 + 3 * meta["duration_s"] / speed, check=False)
+        others = OtherSensors(meta["others"], lilod.data_port)
+        try:
+            replayed = subprocess.run(
+                [root / "build/release/bin/lilo", "replay", folder / "data.pcap", "--speed", str(speed),
+                 "--data-port", str(lilod.data_port), "--position-port", str(lilod.position_port)],
+                stdout=subprocess.DEVNULL, timeout=60 + 3 * meta["duration_s"] / speed, check=False)
+        finally:
+            meta["foreign_sent"] = others.stop()
         health = lilod.wait_health(lambda h: h["sensor_silent_s"] > 1.0, 15)
     except subprocess.TimeoutExpired:
         return {"bad": ["the replay hangs"]}
@@ -252,11 +277,13 @@ def judged(meta, lilod, folder):
 def run(root, options, speed):
     with tempfile.TemporaryDirectory(prefix="lilo_campaign_") as name:
         folder = pathlib.Path(name)
-        made = subprocess.run([root / "build/release/bin/lilo", "sim", folder, "--quiet", *options],
+        simulated = [option for option in options if option[0] != "+"]
+        made = subprocess.run([root / "build/release/bin/lilo", "sim", folder, "--quiet", *simulated],
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
         if made.returncode != 0:
             return {"options": options, "bad": ["lilo sim: " + made.stderr.strip()]}
         meta = json.loads((folder / "meta.json").read_text())
+        meta["others"] = [option[1:] for option in options if option[0] == "+"]
         meta["silent"] = silent_packets(meta, options)
         if not meta["gps"]:
             speed = 1.0  # such stamps follow the computer's clock
