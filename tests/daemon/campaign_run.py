@@ -129,13 +129,17 @@ class Truth:
 
 
 def errors(poses, truth, offset):
-    """Of every pose against its session's first: (m, deg)."""
+    """Of every pose against its session's first that is valid: (m, deg). A start that was found to be
+    wrong begins again, and then nobody knows where its first poses were: they are `initializing`."""
     out, session, first = [], None, None
-    for t, position, orientation, _, its_session in poses:
+    for t, position, orientation, status, its_session in poses:
         at = truth.at(t + offset)
         if at is None:
             if session is None:
                 return None
+            out.append((0.0, 0.0))
+            continue
+        if its_session != session and status == "initializing":
             out.append((0.0, 0.0))
             continue
         if its_session != session:
