@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "config/key.hpp"
 #include "config/key_builders.hpp"
 #include "config/text_forms.hpp"

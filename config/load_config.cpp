@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "config/config.hpp"
 #include "config/key.hpp"
 #include "config/yaml_reader.hpp"

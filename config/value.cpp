@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "config/value.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "config/yaml_reader.hpp"
 
 #include "config/scalar.hpp"

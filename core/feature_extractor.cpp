@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/feature_extractor.hpp"
 
 #include "core/image/feature_image.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/complaints.hpp"
 
 #include "drivers/sensor_identity.hpp"

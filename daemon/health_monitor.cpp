@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/health_monitor.hpp"
 
 #include "daemon/clock.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "config/config.hpp"
 #include "config/print_config.hpp"
 #include "config/version.hpp"

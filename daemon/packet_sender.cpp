@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/packet_sender.hpp"
 
 #include <chrono>

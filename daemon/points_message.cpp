@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/points_message.hpp"
 
 #include "daemon/message_head.hpp"

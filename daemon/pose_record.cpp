@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/pose_record.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/publisher.hpp"
 
 #include "daemon/base_frame.hpp"

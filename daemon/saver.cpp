@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/saver.hpp"
 
 #include "daemon/metrics_file.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/service.hpp"
 
 #include "config/key.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/calibration.hpp"
 #include "drivers/calibration_xml.hpp"
 #include "drivers/packet_source.hpp"

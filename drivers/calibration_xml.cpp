@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/calibration_xml.hpp"
 
 #include "core/scan.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/hdl64e_status.hpp"
 
 #include "drivers/gprmc.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/hdl64e_unit.hpp"
 
 #include "drivers/packet_source.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/kitti_scans.hpp"
 
 #include "drivers/kitti_rings.hpp"

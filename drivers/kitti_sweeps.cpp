@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/kitti_sweeps.hpp"
 
 #include "drivers/kitti_times.hpp"

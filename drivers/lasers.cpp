@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/lasers.hpp"
 
 #include "drivers/wire.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/packet_returns.hpp"
 
 #include "drivers/firing.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/pcap_scans.hpp"
 
 #include "drivers/calibration.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/link_layer.hpp"
 #include "drivers/packet_source.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/position_packet.hpp"
 
 #include "drivers/wire.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/scan_assembler.hpp"
 
 #include "drivers/azimuth.hpp"

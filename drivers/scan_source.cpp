@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/scan_source.hpp"
 
 #include "drivers/kitti_scans.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/sensor_clock.hpp"
 
 #include <algorithm>

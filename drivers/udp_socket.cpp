@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/udp_socket.hpp"
 
 #include <boost/asio/ip/multicast.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/packet_source.hpp"
 #include "drivers/udp_socket.hpp"
 

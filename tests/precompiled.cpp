@@ -1,1 +1,2 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Nothing: CMake needs a source to build the precompiled header beside.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// What most tests include, read once by the compiler (LILO_PRECOMPILE). Every test includes what
 /// it uses all the same: clang-tidy and builds without the option see no precompiled header. Only
 /// headers whose macros do not depend on what a target links.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "config/version.hpp"
 #include "tools/bench/bench_command.hpp"
 #include "tools/command_line/completion.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tool_config.hpp"
 
 #include "config/key.hpp"

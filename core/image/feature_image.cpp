@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/image/feature_image.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/map/cell_map.hpp"
 
 #include <Eigen/Eigenvalues>

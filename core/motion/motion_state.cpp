@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/motion/motion_state.hpp"
 
 #include <algorithm>

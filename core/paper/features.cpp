@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/paper/features.hpp"
 
 #include "core/paper/segmentation.hpp"

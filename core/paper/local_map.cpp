@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/paper/local_map.hpp"
 
 // With these we link no library of filters, which brings five more and 10 MB of resident memory.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/paper/paper_odometry.hpp"
 
 #include "core/paper/segmentation.hpp"

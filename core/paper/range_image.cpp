@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/paper/range_image.hpp"
 
 #include <algorithm>

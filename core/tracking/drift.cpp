@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/drift.hpp"
 
 #include <Eigen/Eigenvalues>

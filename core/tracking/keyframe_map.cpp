@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/keyframe_map.hpp"
 
 #include "core/image/selection.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/observation.hpp"
 
 #include "core/map/local_maps.hpp"

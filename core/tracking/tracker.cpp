@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/tracker.hpp"
 
 #include "core/registration/weak_directions.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How long each kernel of the odometry takes for one scan: a VLP-16 or an HDL-64E in a hall of
 // 40 x 24 x 8 m with a row of pillars, made here. See README.md.
 #include "core/image/feature_image.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How many times faster than the sensor sends are packets decoded and put together to scans, on one
 // core, and what a plain copy of the same packets costs in the same run. "x_sensor" is the factor.
 #include "drivers/sensor_table.hpp"

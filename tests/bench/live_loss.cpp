@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A sender process plays an HDL-64E at S2 rate (3472 packets/s) over loopback to a receiver that
 // decodes and assembles; prints what was lost, and by whom. live_loss [SECONDS]; exit code 1 when a
 // packet is missing that the kernel did not count as dropped.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // After the first seconds scans become poses without touching the heap.
 #include "core/odometry.hpp"
 #include "drivers/scan_source.hpp"

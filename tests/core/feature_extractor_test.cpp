@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A scan's features are the same bits, whole or in parts, wherever the parts are divided.
 #include "core/feature_extractor.hpp"
 

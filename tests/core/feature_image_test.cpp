@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the image plane says of returns, against scenes whose every range has a closed form.
 #include "core/image/feature_image.hpp"
 

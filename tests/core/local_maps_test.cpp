@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Features are matched at the finest level of the map that knows their surroundings.
 #include "core/map/local_maps.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/local_odometry.hpp"
 
 #include "tests/core/observed_scan.hpp"

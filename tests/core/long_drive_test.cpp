@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a scan costs is bounded by the features, the map and the steps it takes; none of them may
 // grow with the way travelled. Times are measured by `lilo run`, not here.
 #include "core/odometry.hpp"

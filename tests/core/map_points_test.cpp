@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/odometry.hpp"
 #include "tests/core/analytic_scene.hpp"
 #include "tests/core/profiles.hpp"

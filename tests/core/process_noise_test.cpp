@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The process noise is estimated from the motion, and a motion that was not expected is followed.
 #include "core/motion/process_noise.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which features are taken.
 #include "core/image/selection.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The solver by itself: a pose is found again from a map made at another one.
 #include "core/registration/solver.hpp"
 

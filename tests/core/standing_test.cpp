@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // When a sensor is supposed to stand, and when a scan may say so.
 #include "core/motion/standing.hpp"
 

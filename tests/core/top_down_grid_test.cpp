@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/search/top_down_grid.hpp"
 
 #include "core/image/feature_image.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The state machine of tracker.hpp, transition by transition.
 #include "core/image/feature_image.hpp"
 #include "core/tracking/tracker.hpp"

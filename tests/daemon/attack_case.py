@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What every attack on a running lilod is made of, for the scripts beside this file."""
 import ctypes
 import os

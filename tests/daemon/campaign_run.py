@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """One scenario of tests/campaign: lilo sim, lilod, lilo replay, and what came of it."""
 
 import bisect

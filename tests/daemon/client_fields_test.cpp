@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/pose_message.hpp"
 #include "tests/daemon/child_process.hpp"
 #include "tests/daemon/sockets.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/daemon/conversation.hpp"
 #include "tools/clients/lilo_client.hpp"
 

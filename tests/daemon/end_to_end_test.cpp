@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/odometry.hpp"
 #include "drivers/scan_source.hpp"
 #include "tests/daemon/lilod_fixture.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/packet_message.hpp"
 #include "tests/daemon/conversation.hpp"
 #include "tests/daemon/tun_network.hpp"

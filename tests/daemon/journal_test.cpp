@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/event.hpp"
 #include "daemon/journal_socket.hpp"
 #include "daemon/log.hpp"

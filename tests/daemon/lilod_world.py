@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A lilod and all it talks to, for the scripts beside this file: sensors, systemd's journal, a sink."""
 import glob
 import json

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/line_budget.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/metrics_writer.hpp"
 
 #include "tests/daemon/text_of.hpp"

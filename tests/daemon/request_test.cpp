@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/request.hpp"
 
 #include "daemon/client_table.hpp"

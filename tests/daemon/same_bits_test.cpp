@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The same capture gives the same poses: run again, on one core or on several, as a file or as
 // packets that arrive.
 #include "tests/daemon/lilod_fixture.hpp"

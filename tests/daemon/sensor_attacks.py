@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What sensors do to a running lilod: they fall silent, stick, lie, are of another model."""
 import os
 import socket

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/daemon/child_process.hpp"
 #include "tests/daemon/text_of.hpp"
 

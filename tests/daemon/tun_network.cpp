@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/daemon/tun_network.hpp"
 
 #include <linux/if_tun.h>

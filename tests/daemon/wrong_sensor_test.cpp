@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/complaints.hpp"
 #include "daemon/prometheus.hpp"
 #include "tests/daemon/a_health.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // After the first revolution packets become scans without touching the heap.
 #include "tests/drivers/packets.hpp"
 

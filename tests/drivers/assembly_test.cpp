@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is lost, doubled, swapped or wrong on the way must be counted and must not bend a scan.
 #include "tests/drivers/packets.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A VLP-16 told to fire in a part of its turn sends nothing for the rest. How its firmware fills
 // the packets at the ends of that part is in no manual: both ways that are possible are tested.
 #include "tests/drivers/packets.hpp"

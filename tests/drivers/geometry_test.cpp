@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Packets of a known room, made by the manuals' tables, must decode to points on its surfaces.
 #include "drivers/sensor_table.hpp"
 #include "tests/drivers/packets.hpp"

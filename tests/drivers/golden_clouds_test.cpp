@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Real VLP-32C and VLS-128 packets against the clouds an independent decoder (tier4/nebula) made of
 // them, point by point. Its angle tables are read from its own files.
 #include "drivers/calibration.hpp"

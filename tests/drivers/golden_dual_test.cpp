@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A real VLP-16 in dual return mode against the cloud an independent decoder made of its packets.
 #include "drivers/wire.hpp"
 #include "tests/drivers/bag.hpp"

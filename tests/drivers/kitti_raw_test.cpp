@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/packet_source.hpp"
 #include "drivers/scan_source.hpp"
 #include "tests/drivers/data_dir.hpp"

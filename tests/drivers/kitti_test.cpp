@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/kitti_rings.hpp"
 #include "drivers/packet_source.hpp"
 #include "drivers/scan_source.hpp"

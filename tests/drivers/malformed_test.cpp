@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Nothing a packet holds may harm: it is counted and left out.
 #include "tests/drivers/packets.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The real VLP-16 capture: 293 data and 57 position packets in 0.388 s at 600 rpm, nothing lost,
 // the azimuth wraps four times, GPS locked on 21 January 2016, 08:18:02 UTC (facts read from the
 // bytes by independent programs).

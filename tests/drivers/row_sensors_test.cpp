@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // VLP-32C, HDL-32E and VLS-128: packets of a known room must decode to points on its surfaces, at
 // the manuals' times, and losses must be counted to the packet.
 #include "drivers/packet_decoder.hpp"

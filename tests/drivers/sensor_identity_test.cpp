@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The product byte decides whose packets they are; a sensor that is not the configured one is
 // refused by name, from the first packet on.
 #include "drivers/sensor_identity.hpp"

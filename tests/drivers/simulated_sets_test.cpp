@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Captures of an independent simulator, with the time of every whole revolution.
 #include "drivers/scan_source.hpp"
 #include "tests/drivers/data_dir.hpp"

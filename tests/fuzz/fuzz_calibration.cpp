@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Calibration files: db.xml and the YAML form.
 #include "drivers/calibration_xml.hpp"
 #include "drivers/packet_source.hpp"

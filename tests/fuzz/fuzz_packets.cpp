@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A stream of packets of any size and content, at any time: [u8 kind][u16 ms or us][payload]. Kinds
 // 0-3 are data packets, 4 a position packet, 5 one of 0-255 bytes.
 #include "drivers/scan_builder.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Capture files, through libpcap, and captured frames of every link type, straight.
 #include "drivers/link_layer.hpp"
 #include "drivers/packet_source.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The 512-byte position packet and its NMEA sentence.
 #include "drivers/position_packet.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The status bytes of an HDL-64E: [type][value] pairs; a type of 0 is a loss of `value` packets.
 #include "drivers/hdl64e_status.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Writes the seeds of tests/fuzz/corpus: one good input of each kind. Run once, by hand.
 #include "tests/drivers/capture_file.hpp"
 

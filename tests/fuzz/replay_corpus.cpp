@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Without libFuzzer: runs a target on every file of the folders given, as a plain test.
 #include "tests/fuzz/fuzz_input.hpp"
 

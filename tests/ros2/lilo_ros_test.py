@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """lilo_ros against stand-ins for ROS 2, message by message: lilo_ros_test.py FOLDER_OF_CLIENTS"""
 import importlib.util
 import math

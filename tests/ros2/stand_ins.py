@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The parts of ROS 2 that lilo_ros uses, without ROS: what is published is kept, and printed as one
 JSON line a message where PRINT is set. Import this before lilo_ros."""
 import json

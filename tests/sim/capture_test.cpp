@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/sim/rig_fixture.hpp"
 #include "tools/sim/addresses.hpp"
 #include "tools/sim/position_packet.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "drivers/scan_builder.hpp"
 #include "tests/sim/rig_fixture.hpp"
 #include "tools/sim/block_encoder.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sim/status_bytes.hpp"
 
 #include "tools/sim/hdl64_table.hpp"

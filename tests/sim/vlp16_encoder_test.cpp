@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sim/vlp16_encoder.hpp"
 
 #include "tests/sim/rig_fixture.hpp"

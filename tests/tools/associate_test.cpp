@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/eval/associate.hpp"
 
 #include <gtest/gtest.h>

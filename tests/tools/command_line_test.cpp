@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/command_line/completion.hpp"
 #include "tools/command_line/suggestion.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/doctor/machine_checks.hpp"
 #include "tools/doctor/wire.hpp"
 

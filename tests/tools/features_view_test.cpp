@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/plot/features_view.hpp"
 
 #include "tools/eval/error_track.hpp"

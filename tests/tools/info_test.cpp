@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Against what others counted: the real capture by independent programs, the simulated one by the
 // simulator that lost the packets.
 #include "tests/drivers/data_dir.hpp"

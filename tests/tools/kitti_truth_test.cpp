@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/kitti_truth.hpp"
 
 #include "tests/tools/temporary_folder.hpp"

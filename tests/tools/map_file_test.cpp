@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/run/map_file.hpp"
 
 #include "tests/tools/temporary_folder.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/daemon/child_process.hpp"
 #include "tests/tools/mcap_core.hpp"
 #include "tests/tools/temporary_folder.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/tools/temporary_folder.hpp"
 #include "tools/bench/paper/paper_bench.hpp"
 #include "tools/csv.hpp"

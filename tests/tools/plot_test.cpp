@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/plot/density_image.hpp"
 #include "tools/plot/map_points.hpp"
 #include "tools/plot/scan_view.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Reads an MCAP file with @mcap/core, once by its index and once from the front to the end with all
 // checksums: node read_mcap.mjs FOLDER_WITH_NODE_MODULES FILE. Prints one JSON object.
 import { createRequire } from "node:module";

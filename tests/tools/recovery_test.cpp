@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The default profile where something is wrong with the scans: a pose called `tracking` is right,
 // and after the trouble there are such poses again.
 #include "core/odometry.hpp"

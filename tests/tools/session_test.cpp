@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The default profile where the motion or the place changes at once: followed, or another session;
 // no pose called `tracking` is wrong, and no state lasts.
 #include "core/odometry.hpp"

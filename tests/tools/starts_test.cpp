@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The default profile, switched on again and again all along simulated drives: what it says of
 // itself against the truth.
 #include "core/odometry.hpp"

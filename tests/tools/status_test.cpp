@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/reset/reset_request.hpp"
 #include "tools/status/status_report.hpp"
 #include "tools/status/status_words.hpp"

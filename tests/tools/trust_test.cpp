@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/eval/trust.hpp"
 
 #include "tests/tools/temporary_file.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Writes three messages on two topics with @mcap/core:
 // node write_mcap.mjs FOLDER_WITH_NODE_MODULES chunks|no_chunks FILE.
 import { createRequire } from "node:module";

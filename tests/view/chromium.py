@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Headless Chromium by its DevTools protocol, over the pipe: nothing but Python's own library."""
 
 import base64

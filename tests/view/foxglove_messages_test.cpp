@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/view/foxglove_messages.hpp"
 
 #include "tools/bench/base64.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """lilod, lilo view and lilo replay as the tests start them."""
 
 import json

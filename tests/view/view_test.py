@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """lilo view as its users have it: a headless Chromium before a live lilod and before recordings.
 Screenshots of what it showed are left in the folder --out for somebody to look at. Exit code 77
 where there is no Chromium or no capture."""

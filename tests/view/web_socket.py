@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A WebSocket client (RFC 6455) for what a browser would not do."""
 
 import base64

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/bench_command.hpp"
 
 #include "tools/bench/paired_report.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/benchmark_set.hpp"
 
 #include "tools/kitti_truth.hpp"

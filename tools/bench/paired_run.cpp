@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/paired_run.hpp"
 
 #include "core/odometry.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Poses from lilod, in one file without dependencies. The protocol is lilod-protocol(7).
 
     from lilo_client import LiloClient

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Prints ten poses of lilod: print_poses.py [HOST [PORT]]"""
 import sys
 

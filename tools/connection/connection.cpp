@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/connection/connection.hpp"
 
 #include "daemon/message_head.hpp"

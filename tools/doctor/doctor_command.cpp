@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/doctor/doctor_command.hpp"
 
 #include "tools/cli.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/eval/error_track.hpp"
 
 #include <fmt/format.h>

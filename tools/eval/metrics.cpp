@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/eval/metrics.hpp"
 
 #include <Eigen/Geometry>

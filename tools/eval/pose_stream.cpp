@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/eval/pose_stream.hpp"
 
 #include "daemon/pose_message.hpp"

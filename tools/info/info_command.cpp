@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/info/info_command.hpp"
 
 #include "tools/info/info_report.hpp"

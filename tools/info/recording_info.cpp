@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/info/recording_info.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/plot/map_points.hpp"
 
 namespace lilo {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // For builds without profile paper.
 #include "tools/plot/features_view.hpp"
 

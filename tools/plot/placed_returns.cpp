@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/plot/placed_returns.hpp"
 
 namespace lilo {

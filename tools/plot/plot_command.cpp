@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/plot/plot_command.hpp"
 
 #include "drivers/scan_source.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/plot/top_view.hpp"
 
 #include "tools/plot/density_image.hpp"

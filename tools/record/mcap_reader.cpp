@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/record/mcap_reader.hpp"
 
 #include "tools/text_file.hpp"

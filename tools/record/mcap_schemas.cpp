@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/record/mcap_schemas.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/record/packet_recording.hpp"
 
 #include "daemon/packet_message.hpp"

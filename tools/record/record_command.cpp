@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/record/record_command.hpp"
 
 #include "daemon/packet_message.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/record/tum_files.hpp"
 
 #include "tools/listen/pose_message.hpp"

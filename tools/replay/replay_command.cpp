@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/replay/replay_command.hpp"
 
 #include "tools/cli.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/reset/reset_command.hpp"
 
 #include "tools/cli.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/run/datagram_writer.hpp"
 
 #include "daemon/base_frame.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/run/run_command.hpp"
 
 #include "tools/bench/benchmark_set.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/run/voxel_map.hpp"
 
 #include <algorithm>

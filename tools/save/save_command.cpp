@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/save/save_command.hpp"
 
 #include "tools/connection/address_options.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sim/block_encoder.hpp"
 
 #include <algorithm>

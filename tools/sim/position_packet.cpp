@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sim/position_packet.hpp"
 
 #include <fmt/format.h>

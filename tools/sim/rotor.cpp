@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sim/rotor.hpp"
 
 #include "tools/sim/random.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sim/sim_command.hpp"
 
 #include "tools/sim/sim_options.hpp"

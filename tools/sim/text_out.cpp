@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sim/text_out.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sim/truth_writer.hpp"
 
 #include "core/pose.hpp"

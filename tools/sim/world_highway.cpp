@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sim/noise_field.hpp"
 #include "tools/sim/planting.hpp"
 #include "tools/sim/plants.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/status/read_status.hpp"
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/status/status_report.hpp"
 
 #include "tools/listen/pose_message.hpp"

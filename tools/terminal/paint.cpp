@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/terminal/paint.hpp"
 
 #include <fmt/format.h>

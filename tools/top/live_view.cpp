@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/top/live_view.hpp"
 
 #include "tools/status/status_words.hpp"

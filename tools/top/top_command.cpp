@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/top/top_command.hpp"
 
 #include "tools/clock.hpp"

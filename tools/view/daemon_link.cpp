@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/view/daemon_link.hpp"
 
 #include <boost/asio/buffer.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/view/view_command.hpp"
 
 #include "tools/tool_config.hpp"

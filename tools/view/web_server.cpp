@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/view/web_server.hpp"
 
 #include "tools/view/foxglove_session.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/view/web_socket.hpp"
 
 #include <boost/asio/buffer.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/paper/cell.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/paper/html_report.hpp"
 
 #include "tools/bench/base64.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/paper/ledger.hpp"
 
 #include "tools/csv.hpp"

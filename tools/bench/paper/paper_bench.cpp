@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/paper/paper_bench.hpp"
 
 #include "config/print_config.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/paper/tables.hpp"
 
 #include "tools/bench/paper/published.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/worlds/world_list.hpp"
 
 #include "tools/bench/worlds/default_worlds.hpp"

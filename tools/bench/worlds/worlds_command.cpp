@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/worlds/worlds_command.hpp"
 
 #include "tools/bench/worlds/subprocess.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/worlds/comparison.hpp"
 #include "tools/bench/worlds/world_rows.hpp"
 #include "tools/bench/worlds/worlds_report.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tools/bench/worlds/worlds_run.hpp"
 
 #include "tools/stop_signals.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where the scene is looked at from.
 
 import { add, clamp, lookAt, multiply, orthographic, perspective, scale, sub, wrapped } from "./math.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Joins the stream, the store and what is seen of it.
 
 import { Camera } from "./camera.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Distances between points of the map that were clicked.
 
 import { project, sub } from "./math.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Everything that is said in words and figures.
 
 import { clamp, quantile, rollPitchYaw, rotationOf } from "./math.js";

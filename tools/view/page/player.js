@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which frame is shown: the newest, or one of the past.
 
 export class Player {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The stream: datagrams of daemon/PROTOCOL.md, a line each, and lines {"view":...} of lilo view itself.
 
 /** Statuses as the protocol names them; their places are what the track is coloured by. */

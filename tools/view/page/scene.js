@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Draws the store as it was at one frame.
 
 import { add, quantile, rotationOf, scale, symmetricEigen, turned } from "./math.js";

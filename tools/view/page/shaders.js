@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The programs of the graphics card (GLSL ES 3.00).
 
 /** Points coloured by their height, or all in one colour; the farther away the smaller. */

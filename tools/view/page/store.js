@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What has been received: poses in the order of their arrival, the map of each session.
 
 import { rotationOf } from "./math.js";

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """ros2 launch lilo_ros lilo.launch.py host:=192.168.1.20 base_frame:=base_link"""
 import os
 

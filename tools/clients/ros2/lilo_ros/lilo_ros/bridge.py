@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """lilod to ROS 2: nav_msgs/Odometry, TF odom -> base, diagnostics, and the session."""
 import threading
 import time

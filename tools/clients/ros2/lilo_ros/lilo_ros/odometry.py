@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Poses of lilod as ROS has them: the frames of REP-105, the covariances of nav_msgs/Odometry."""
 from lilo_ros.transform import Transform, congruent, cross, rotated, turned
 

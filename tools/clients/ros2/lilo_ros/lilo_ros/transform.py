@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Rigid motions and what they do to poses, twists and covariances. Quaternions are x y z w."""
 
 
