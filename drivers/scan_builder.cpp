@@ -177,9 +177,9 @@ Outcome ScanBuilder::Impl::feed_data(const PacketView& packet) {
   return Outcome::used;
 }
 
-// The table to read a packet with, null to refuse it. Old firmware leaves the product byte to
-// chance; then the configuration must name the model.
+// The table to read a packet with, null to refuse it.
 const SensorTable* ScanBuilder::Impl::accept(const SensorIdentity& identity,
+  if (!is_readable(identity, model, ignore_product)) return nullptr;
                                              std::int64_t received_ns) const {
   if (model == SensorModel::automatic) {
     const bool another = identity.table != nullptr && seen_model != SensorModel::automatic &&
@@ -187,10 +187,7 @@ const SensorTable* ScanBuilder::Impl::accept(const SensorIdentity& identity,
     const bool replaceable = std::abs(received_ns - model_heard_ns) > kReplaceableNs;
     return another && !replaceable ? nullptr : identity.table;
   }
-  if (!ignore_product) {
-    if (identity.table != nullptr) return identity.table->model == model ? identity.table : nullptr;
-    if (is_product(identity.product)) return nullptr;
-  }
+  if (!ignore_product && identity.table != nullptr) return identity.table;
   return decoder.table().model == model ? &decoder.table() : find_sensor(model);
 }
 

@@ -26,6 +26,13 @@ SensorIdentity identify(DataPacket packet) {
   return {find_product(product), product};
 }
 
+bool is_readable(const SensorIdentity& identity, SensorModel model, bool ignore_product) {
+  if (model == SensorModel::automatic) return identity.table != nullptr;
+  if (ignore_product) return true;
+  if (identity.table != nullptr) return identity.table->model == model;
+  return !is_product(identity.product);
+}
+
 bool is_product(std::uint8_t product) { return !product_name(product).empty(); }
 
 std::string_view product_name(std::uint8_t product) {

@@ -18,6 +18,11 @@ struct SensorIdentity {
 /// By the flags of the blocks, which only an HDL-64E alternates, then by the product byte.
 SensorIdentity identify(DataPacket packet);
 
+/// Whether `model` may be read from such packets. Old firmware leaves the product byte to chance:
+/// then the configuration must name the model. `ignore_product` as
+/// SensorConfig::ignore_product_byte.
+bool is_readable(const SensorIdentity& identity, SensorModel model, bool ignore_product);
+
 /// The byte is that of a sensor, so it is not left to chance (old firmware).
 bool is_product(std::uint8_t product);
 

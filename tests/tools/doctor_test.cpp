@@ -27,10 +27,14 @@ Machine a_machine() {
   return machine;
 }
 
-Wire a_wire(const std::string& model, std::uint32_t address = kSensor) {
+SensorIdentity named(SensorModel model) {
+  return {find_sensor(model), find_sensor(model)->product};
+}
+
+Wire a_wire(const SensorIdentity& identity = named(SensorModel::vlp16)) {
   Wire wire;
   wire.seconds = 0.5;
-  wire.senders[address] = {.data = 377, .position = 1, .model = model};
+  wire.senders[kSensor] = {.data = 377, .position = 1, .identity = identity};
   return wire;
 }
 
@@ -60,27 +64,60 @@ TEST(Doctor, ACardWithoutALinkIsBad) {
 }
 
 TEST(Doctor, PacketsTellWhoSendsThem) {
-  const Finding finding = check_packets({}, a_machine(), a_wire("VLP-16"), {});
+  const Finding finding = check_packets({}, a_machine(), a_wire(), {});
   EXPECT_EQ(finding.verdict, Verdict::good);
   EXPECT_EQ(finding.text, "VLP-16 192.168.1.201: 754 packets/s and position packets");
 }
 
+// Every model that the drivers read, and no other.
+TEST(Doctor, SensorsThatLilodReadsAreGood) {
+  for (const SensorTable* sensor : sensor_tables()) {
+    const Wire wire = a_wire({sensor, sensor->product});
+    Config config;
+    const Finding found = check_packets(config, a_machine(), wire, {});
+    EXPECT_EQ(found.verdict, Verdict::good) << found.text;
+    EXPECT_EQ(found.text.rfind(std::string(sensor->name) + " 192.168.1.201: ", 0), 0U);
+    config.sensor.model = sensor->model;
+    EXPECT_EQ(check_packets(config, a_machine(), wire, {}).verdict, Verdict::good) << sensor->name;
+  }
+}
+
 TEST(Doctor, AnotherSensorIsRefusedByName) {
   Config config;
-  const Finding unknown = check_packets(config, a_machine(), a_wire("HDL-32E"), {});
-  EXPECT_EQ(unknown.verdict, Verdict::bad);
-  EXPECT_NE(unknown.text.find("HDL-32E"), std::string::npos);
+  const Finding never = check_packets(config, a_machine(), a_wire({nullptr, 0x23}), {});
+  EXPECT_EQ(never.verdict, Verdict::bad);
+  EXPECT_EQ(never.text.rfind("VLP-32A or VLP-32B (product byte 0x23) 192.168.1.201: ", 0), 0U);
+  EXPECT_EQ(never.cure, "lilod cannot read them");
   config.sensor.model = SensorModel::vlp16;
-  EXPECT_EQ(check_packets(config, a_machine(), a_wire("HDL-64E"), {}).verdict, Verdict::bad);
-  EXPECT_EQ(check_packets(config, a_machine(), a_wire("VLP-16"), {}).verdict, Verdict::good);
+  for (const SensorModel model :
+       {SensorModel::hdl64e, SensorModel::vlp32c, SensorModel::hdl32e, SensorModel::vls128}) {
+    const Finding other = check_packets(config, a_machine(), a_wire(named(model)), {});
+    EXPECT_EQ(other.verdict, Verdict::bad);
+    EXPECT_NE(other.text.find(", but sensor.model is VLP-16"), std::string::npos) << other.text;
+    EXPECT_EQ(other.cure, "set sensor.model: auto");
+  }
+  config.sensor.ignore_product_byte = true;
+  EXPECT_EQ(check_packets(config, a_machine(), a_wire(named(SensorModel::vlp32c)), {}).verdict,
+            Verdict::good);
   config.udp.sensor_address = "192.168.1.202";
-  EXPECT_EQ(check_packets(config, a_machine(), a_wire("VLP-16"), {}).verdict, Verdict::bad);
+  EXPECT_EQ(check_packets(config, a_machine(), a_wire(), {}).verdict, Verdict::bad);
+}
+
+// Old firmware leaves the product byte to chance: the configuration has to say the model.
+TEST(Doctor, AnUnknownProductNeedsAModel) {
+  Config config;
+  const Wire wire = a_wire({nullptr, 0x77});
+  const Finding unknown = check_packets(config, a_machine(), wire, {});
+  EXPECT_EQ(unknown.verdict, Verdict::bad);
+  EXPECT_EQ(unknown.cure, "set sensor.model");
+  config.sensor.model = SensorModel::vlp16;
+  EXPECT_EQ(check_packets(config, a_machine(), wire, {}).verdict, Verdict::good);
 }
 
 TEST(Doctor, TwoSensorsNeedAnAddress) {
   Config config;
-  Wire wire = a_wire("VLP-16");
-  wire.senders[kSensor + 1] = {.data = 377, .model = "VLP-16"};
+  Wire wire = a_wire();
+  wire.senders[kSensor + 1] = {.data = 377, .identity = named(SensorModel::vlp16)};
   EXPECT_EQ(check_packets(config, a_machine(), wire, {}).verdict, Verdict::bad);
   config.udp.sensor_address = "192.168.1.202";
   EXPECT_EQ(check_packets(config, a_machine(), wire, {}).verdict, Verdict::good);
@@ -97,7 +134,7 @@ TEST(Doctor, SilenceNamesWhatMayHoldPacketsBack) {
   const Finding firewall = check_firewall({}, machine, wire);
   EXPECT_EQ(firewall.verdict, Verdict::warning);
   EXPECT_EQ(firewall.text, "ufw, rp_filter of eth0 may hold them back");
-  EXPECT_EQ(check_firewall({}, machine, a_wire("VLP-16")).verdict, Verdict::good);
+  EXPECT_EQ(check_firewall({}, machine, a_wire()).verdict, Verdict::good);
 }
 
 TEST(Doctor, ATakenPortIsTheDaemonsOrAStrangers) {
@@ -157,15 +194,16 @@ TEST(Doctor, ModelsByTheirPackets) {
     packet[100 * block + 1] = std::byte{0xEE};
   }
   packet[1205] = std::byte{0x22};
-  EXPECT_EQ(model_of(packet.data(), packet.size()), "VLP-16");
+  EXPECT_EQ(name(), "VLP-16");
   packet[1205] = std::byte{0x28};
-  EXPECT_EQ(model_of(packet.data(), packet.size()), "VLP-32C");
+  EXPECT_EQ(name(), "VLP-32C");
   packet[1205] = std::byte{0x77};
-  EXPECT_EQ(model_of(packet.data(), packet.size()), "unknown product 0x77");
+  EXPECT_EQ(name(), "unknown sensor (product byte 0x77)");
   packet[101] = std::byte{0xDD};
-  EXPECT_EQ(model_of(packet.data(), packet.size()), "HDL-64E");
-  EXPECT_EQ(model_of(packet.data(), 512), "");
+  EXPECT_EQ(name(), "HDL-64E");
+  EXPECT_FALSE(identity_of(std::span(packet).first(512)));
 }
+  const auto name = [&] { return name_of(identity_of(packet).value()); };
 
 TEST(Doctor, OneFailureIsEnough) {
   std::vector<Finding> findings{{Verdict::good, "A", "well", ""},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "config/config.hpp"
+#include "drivers/sensor_identity.hpp"
 #include "tools/doctor/finding.hpp"
 #include "tools/doctor/machine.hpp"
 
@@ -9,6 +10,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,7 +19,7 @@ namespace lilo::doctor {
 /// What one address sent to the configured ports.
 struct Sender {
   std::uint64_t data = 0, position = 0, other = 0;
-  std::string model;  ///< "VLP-16", "HDL-64E", or the name of a sensor that lilod does not know
+  SensorIdentity identity;  ///< of its last data packet
 };
 
 /// What came while we listened.
@@ -32,8 +34,10 @@ struct Wire {
 /// Listens where lilod would. Returns early when a hundred data packets have come.
 Wire watch_wire(const UdpConfig& config, double seconds);
 
-/// Of a data packet, by its last two bytes and its blocks; empty: it is none.
-std::string model_of(const std::byte* payload, std::size_t bytes);
+/// What a data packet says it is of; empty: it is no data packet.
+std::optional<SensorIdentity> identity_of(std::span<const std::byte> payload);
+/// "VLP-32C", "unknown sensor (product byte 0x77)".
+std::string name_of(const SensorIdentity& identity);
 
 /// What the running lilod says, when it has the port: the health datagram's object, as JSON text.
 struct RunningDaemon {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "drivers/sensor_status.hpp"
 #include "tools/doctor/wire.hpp"
 
 #include <fmt/format.h>
@@ -11,8 +12,8 @@ namespace {
 constexpr double kSilentAfterS = 1.0;
 
 std::string sentence(std::uint32_t address, const Sender& sender, double seconds) {
-  std::string text = fmt::format("{} {}: {:.0f} packets/s", sender.model, ipv4_text(address),
-                                 static_cast<double>(sender.data) / seconds);
+  std::string text = fmt::format("{} {}: {:.0f} packets/s", name_of(sender.identity),
+                                 ipv4_text(address), static_cast<double>(sender.data) / seconds);
   if (sender.position > 0) text += " and position packets";
   return text;
 }
@@ -24,12 +25,6 @@ std::vector<std::pair<std::uint32_t, Sender>> sensors_of(const Wire& wire) {
   }
   return out;
 }
-
-const char* name_of(SensorModel model) {
-  return model == SensorModel::hdl64e ? "HDL-64E" : "VLP-16";
-}
-
-bool is_known(const std::string& model) { return model == "VLP-16" || model == "HDL-64E"; }
 
 Finding from_daemon(const Config& config, const RunningDaemon& daemon) {
   const std::string port = fmt::format("UDP {}", config.udp.data_port);
@@ -57,21 +52,29 @@ Finding of_several(const std::vector<std::pair<std::uint32_t, Sender>>& sensors,
                       ipv4_text(sensors.front().first))};
 }
 
+/// What lilod would not read.
+Finding of_refused(SensorModel configured, const SensorIdentity& identity,
+                   const std::string& text) {
+  const bool known = identity.table != nullptr;
+  if (configured != SensorModel::automatic) {
+    return {Verdict::bad, "Packets",
+            fmt::format("{}, but sensor.model is {}", text, find_sensor(configured)->name),
+            known ? "set sensor.model: auto" : "lilod cannot read them"};
+  }
+  // An unknown byte may be that of old firmware, which leaves it to chance.
+  return {Verdict::bad, "Packets", text,
+          is_product(identity.product) ? "lilod cannot read them" : "set sensor.model"};
+}
+
 Finding of_one(const Config& config, std::uint32_t address, const Sender& sender, double seconds) {
   const std::string text = sentence(address, sender, seconds);
   const std::string& wanted = config.udp.sensor_address;
-  if (!is_known(sender.model))
-    return {Verdict::bad, "Packets", text, "lilod knows the VLP-16 and the HDL-64E"};
   if (!wanted.empty() && wanted != ipv4_text(address)) {
     return {Verdict::bad, "Packets", fmt::format("{}, but udp.sensor_address is {}", text, wanted),
             "set udp.sensor_address: " + ipv4_text(address)};
   }
-  const SensorModel model = config.sensor.model;
-  if (model != SensorModel::automatic && sender.model != name_of(model)) {
-    return {Verdict::bad, "Packets",
-            fmt::format("{}, but sensor.model is {}", text, name_of(model)),
-            "set sensor.model: auto"};
-  }
+  if (!is_readable(sender.identity, config.sensor.model, config.sensor.ignore_product_byte))
+    return of_refused(config.sensor.model, sender.identity, text);
   return {Verdict::good, "Packets", text, ""};
 }
 
@@ -98,6 +101,11 @@ Finding of_none(const Config& config, const Wire& wire) {
 }
 
 }  // namespace
+
+std::string name_of(const SensorIdentity& identity) {
+  if (identity.table != nullptr) return identity.table->name;
+  return RefusedSensor{.packets = 1, .product_id = identity.product}.name();
+}
 
 Finding check_packets(const Config& config, const Machine& /*machine*/, const Wire& wire,
                       const RunningDaemon& daemon) {

@@ -4,13 +4,9 @@
 #include "tools/clock.hpp"
 #include "tools/doctor/wire.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <sstream>
-#include <utility>
 
 namespace lilo::doctor {
 namespace {
@@ -35,10 +31,9 @@ std::map<std::string, std::uint64_t> received_by_card() {
 
 void count(const PacketView& packet, std::uint16_t position_port, Wire& wire) {
   Sender& sender = wire.senders[packet.source_ipv4];
-  const std::string model = model_of(packet.payload.data(), packet.payload.size());
-  if (!model.empty()) {
+  if (const auto identity = identity_of(packet.payload)) {
     ++sender.data;
-    sender.model = model;
+    sender.identity = *identity;
   } else if (packet.destination_port == position_port) {
     ++sender.position;
   } else {
@@ -65,22 +60,11 @@ void listen(UdpSource& source, const UdpConfig& config, double seconds, Wire& wi
 
 }  // namespace
 
-// VLP-16 manual 9.3.1.7: return mode, then product. An HDL-64E has its status bytes there instead,
-// and blocks of its lower lasers.
-std::string model_of(const std::byte* payload, std::size_t bytes) {
-  constexpr std::array<std::pair<std::uint8_t, const char*>, 5> kProducts{{{0x21, "HDL-32E"},
-                                                                           {0x22, "VLP-16"},
-                                                                           {0x24, "Puck Hi-Res"},
-                                                                           {0x28, "VLP-32C"},
-                                                                           {0xA1, "VLS-128"}}};
-  if (bytes != wire::kDataPacketBytes || wire::block_flag(payload, 0) != wire::kUpperFlag)
-    return {};
-  if (wire::block_flag(payload, 1) == wire::kLowerFlag) return "HDL-64E";
-  const std::uint8_t product = wire::u8(payload + wire::kTailOffset + 1);
-  for (const auto& [number, name] : kProducts) {
-    if (number == product) return name;
-  }
-  return fmt::format("unknown product 0x{:02X}", product);
+std::optional<SensorIdentity> identity_of(std::span<const std::byte> payload) {
+  if (payload.size() != wire::kDataPacketBytes) return {};
+  const DataPacket data = payload.first<wire::kDataPacketBytes>();
+  if (wire::block_flag(data.data(), 0) != wire::kUpperFlag) return {};
+  return identify(data);
 }
 
 Wire watch_wire(const UdpConfig& config, double seconds) {
