@@ -180,10 +180,20 @@ TEST(Doctor, ClockAndDisk) {
   machine.clock = {};
   EXPECT_EQ(check_clock(machine).verdict, Verdict::warning);
   EXPECT_EQ(check_disk(machine).verdict, Verdict::good);
-  machine.disk = {.folder = "/var/lib/lilod", .exists = true, .free_bytes = 1 << 20};
+  machine.disk = {
+      .folder = "/var/lib/lilod", .exists = true, .writable = true, .free_bytes = 1 << 20};
   EXPECT_EQ(check_disk(machine).verdict, Verdict::warning);
+  machine.disk = {.folder = "/srv/lilod", .exists = true, .free_bytes = 1 << 30};
+  EXPECT_EQ(check_disk(machine).text,
+            "/srv/lilod: 1024 MB free, but this user may not write there");
+  machine.disk.writable = true;
+  EXPECT_EQ(check_disk(machine).verdict, Verdict::good);
   machine.disk.exists = false;
   EXPECT_EQ(check_disk(machine).verdict, Verdict::warning);
+  // The link that systemd makes: /var/lib/private is root's alone.
+  machine.disk = {.folder = "/var/lib/lilod", .hidden = true, .free_bytes = 1 << 30};
+  machine.unit_installed = true;
+  EXPECT_EQ(check_disk(machine).verdict, Verdict::good);
 }
 
 // The last byte but one is the return mode, the last the product (VLP-16 manual 9.3.1.6).
@@ -193,6 +203,7 @@ TEST(Doctor, ModelsByTheirPackets) {
     packet[100 * block] = std::byte{0xFF};
     packet[100 * block + 1] = std::byte{0xEE};
   }
+  const auto name = [&] { return name_of(identity_of(packet).value()); };
   packet[1205] = std::byte{0x22};
   EXPECT_EQ(name(), "VLP-16");
   packet[1205] = std::byte{0x28};
@@ -203,7 +214,6 @@ TEST(Doctor, ModelsByTheirPackets) {
   EXPECT_EQ(name(), "HDL-64E");
   EXPECT_FALSE(identity_of(std::span(packet).first(512)));
 }
-  const auto name = [&] { return name_of(identity_of(packet).value()); };
 
 TEST(Doctor, OneFailureIsEnough) {
   std::vector<Finding> findings{{Verdict::good, "A", "well", ""},

@@ -27,11 +27,16 @@ struct DoctorOptions {
   bool json = false;
 };
 
-/// Where the service keeps its state when the configuration names no place.
-std::string state_folder(const Config& config) {
-  const std::string of_unit = "/var/lib/lilod";
+/// Where the service keeps its state when the configuration names no place: links of systemd's,
+/// into a folder that only root may look into.
+std::string state_folder(const Config& config, const std::string& config_path) {
   if (!config.state.directory.empty()) return config.state.directory;
-  return std::filesystem::exists(of_unit) ? of_unit : std::string();
+  const std::string stem = std::filesystem::path(config_path).stem().string();
+  for (const std::string& of_unit : {"/var/lib/lilod-" + stem, std::string("/var/lib/lilod")}) {
+    std::error_code error;
+    if (exists(std::filesystem::symlink_status(of_unit, error))) return of_unit;
+  }
+  return {};
 }
 
 doctor::RunningDaemon ask_daemon(const Config& config) {
@@ -60,8 +65,9 @@ Finding describe(const DoctorOptions& options, const Config& config) {
 
 std::vector<Finding> examine(const DoctorOptions& options, const Config& config) {
   const int priority = config.realtime.worker_priority;
-  const doctor::Machine machine = doctor::read_machine(
-      priority > 0 ? priority + 1 : 0, config.realtime.worker_cpu, state_folder(config));
+  const doctor::Machine machine =
+      doctor::read_machine(priority > 0 ? priority + 1 : 0, config.realtime.worker_cpu,
+                           state_folder(config, options.config));
   const doctor::Wire wire = doctor::watch_wire(config.udp, options.seconds);
   const doctor::RunningDaemon daemon =
       wire.port_taken ? ask_daemon(config) : doctor::RunningDaemon();

@@ -139,12 +139,14 @@ bool unit_is_installed() {
 
 DiskState read_disk(const std::string& folder) {
   DiskState disk{.folder = folder};
+  if (folder.empty()) return disk;
   std::error_code error;
-  disk.exists = !folder.empty() && fs::is_directory(folder, error);
-  if (!disk.exists) return disk;
-  disk.writable = access(folder.c_str(), W_OK) == 0;
+  disk.exists = fs::is_directory(folder, error);
+  disk.hidden = error == std::errc::permission_denied;
+  disk.writable = access(folder.c_str(), W_OK | X_OK) == 0;
+  const std::string looked_at = disk.hidden ? fs::path(folder).parent_path().string() : folder;
   struct statvfs space {};
-  if (statvfs(folder.c_str(), &space) == 0) disk.free_bytes = space.f_bavail * space.f_frsize;
+  if (statvfs(looked_at.c_str(), &space) == 0) disk.free_bytes = space.f_bavail * space.f_frsize;
   return disk;
 }
 

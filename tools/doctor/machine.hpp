@@ -24,7 +24,9 @@ struct ClockState {
 
 struct DiskState {
   std::string folder;
-  bool exists = false, writable = false;
+  bool exists = false;
+  bool hidden = false;  ///< systemd's, of a dynamic user: nobody else may look inside
+  bool writable = false;
   std::uint64_t free_bytes = 0;
 };
 

@@ -73,8 +73,9 @@ Finding check_card(const Config& config, const Machine& machine) {
 
 Finding check_receive_buffer(const Config& config, const Machine& machine) {
   const auto wanted = static_cast<std::uint64_t>(config.udp.receive_buffer_bytes);
-  const std::string text = fmt::format("net.core.rmem_max {} kB, udp.receive_buffer wants {} kB",
-                                       machine.rmem_max_bytes / 1024, wanted / 1024);
+  const std::string text =
+      fmt::format("net.core.rmem_max {} kB, udp.receive_buffer_bytes wants {} kB",
+                  machine.rmem_max_bytes / 1024, wanted / 1024);
   if (machine.rmem_max_bytes >= wanted) return {Verdict::good, "Socket buffer", text, ""};
   return {Verdict::warning, "Socket buffer", text + ": packets are lost when the computer is busy",
           fmt::format("sysctl -w net.core.rmem_max={}; and in /etc/sysctl.d/90-lilo.conf", wanted)};
@@ -142,11 +143,15 @@ Finding check_disk(const Machine& machine) {
   const DiskState& disk = machine.disk;
   if (disk.folder.empty())
     return {Verdict::good, "Disk", "no state directory, so nothing is saved", ""};
-  if (!disk.exists) {
+  if (!disk.exists && !disk.hidden) {
     return {Verdict::warning, "Disk", fmt::format("{}: no such folder", disk.folder),
             "make it, for maps, trajectories and the calibration of an HDL-64E"};
   }
   const std::string text = fmt::format("{}: {} MB free", disk.folder, disk.free_bytes >> 20U);
+  if (!disk.writable && !machine.unit_installed) {
+    return {Verdict::warning, "Disk", text + ", but this user may not write there",
+            "chown it to who runs lilod, or set state.directory"};
+  }
   if (disk.free_bytes < kWantedFreeBytes)
     return {Verdict::warning, "Disk", text, "make room: a map takes some 10 MB"};
   return {Verdict::good, "Disk", text, ""};
