@@ -23,7 +23,7 @@ COVARIANCE = [0.01 * (k // 6 + 1) if k % 7 == 0 else 0.0 for k in range(36)]
 
 
 def pose(x=1.0, status="tracking", orientation=AHEAD, session="a", seq=0, **more):
-    return {"v": "1.0", "timestamp": 5.25, "session": session, "seq": seq, "pose": {
+    return {"v": "2.0", "timestamp": 5.25, "session": session, "seq": seq, "pose": {
         "stamp": {"sec": 5, "nsec": 250000000}, "frame_id": "odom", "child_frame_id": "velodyne",
         "status": status, "position": {"x": x, "y": 2.0, "z": 3.0}, "orientation": orientation,
         "latency_ms": 3.0, "lost_packets": 0, **more}}
@@ -33,7 +33,7 @@ TWIST = {"linear": {"x": 4.0, "y": 5.0, "z": 6.0}, "angular": {"x": 0.1, "y": 0.
 
 
 def health(status="tracking", complaints=()):
-    return {"v": "1.0", "timestamp": 5.5, "session": "a", "health": {
+    return {"v": "2.0", "timestamp": 5.5, "session": "a", "health": {
         "status": status, "complaints": list(complaints), "latency_ms": {"p50": 2.5, "p99": 3.5}}}
 
 

@@ -21,14 +21,14 @@ constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 std::string pose(int seq, const char* status = "tracking", const char* session = "a") {
   return fmt::format(
-      R"({{"v":"1.0","timestamp":1.5,"session":"{}","seq":{},"pose":{{"stamp":{{"sec":1,"nsec":500000000}},)"
+      R"({{"v":"2.0","timestamp":1.5,"session":"{}","seq":{},"pose":{{"stamp":{{"sec":1,"nsec":500000000}},)"
       R"("frame_id":"odom","child_frame_id":"velodyne","status":"{}","position":{{"x":{},"y":2,"z":3}},)"
       R"("orientation":{{"x":0,"y":0,"z":0,"w":1}},"latency_ms":3.1,"lost_packets":0}}}})",
       session, seq, status, seq);
 }
 
 const std::string kHealth =
-    R"({"v":"1.0","timestamp":2.5,"session":"a","health":{"status":"tracking","complaints":[]}})";
+    R"({"v":"2.0","timestamp":2.5,"session":"a","health":{"status":"tracking","complaints":[]}})";
 
 /// What @mcap/core makes of a file.
 json read_by_mcap_core(const std::string& file) {

@@ -83,6 +83,41 @@ TEST(PoseMessage, OtherObjectsAreNotPosesAndRubbishIsNoMessage) {
                           "\xff\xfe", R"({"seq":"x","pose":{"position":{}}})"}) {
     EXPECT_EQ(parse_message(bad, message), MessageKind::malformed) << bad;
   }
+  for (const char* stamp : {R"("sec":9000000001)", R"("sec":-1)", R"("sec":1e30)"}) {
+    std::string datagram = kDatagram;
+    const std::string good = R"("sec":1715678102)";
+    datagram.replace(datagram.find(good), good.size(), stamp);
+    EXPECT_EQ(parse_message(datagram, message), MessageKind::malformed) << stamp;
+  }
+}
+
+// The major number is what counts; its names may mean other things.
+TEST(PoseMessage, OfAnotherProtocolIsNotUnderstood) {
+  PoseMessage message;
+  const auto kind_of = [&](const std::string& version) {
+    return parse_message("{\"v\":" + version + ',' + std::string(kDatagram).substr(1), message);
+  };
+  EXPECT_EQ(kind_of(R"("2.0")"), MessageKind::pose);
+  EXPECT_EQ(kind_of(R"("2.9")"), MessageKind::pose);
+  for (const char* other : {R"("1.0")", R"("3.0")", R"("20.0")", R"("")", "2.0", "null"})
+    EXPECT_EQ(kind_of(other), MessageKind::other_version) << other;
+}
+
+// Anybody may send to the port that `lilo listen` has.
+TEST(PoseMessage, NothingThatATerminalObeysIsShown) {
+  std::string datagram = kDatagram;
+  datagram.replace(datagram.find("tracking"), 8, R"(\u001b[2Jx\u009b)");
+  PoseMessage message;
+  ASSERT_EQ(parse_message(datagram, message), MessageKind::pose);
+  for (const std::string& line :
+       {pose_line(message), other_line("{\"a\":\"\xc2\x9b\"}"),
+        other_line(R"({"health":{"status":"\u001b[2J","complaints":["\u009b"],"rate_hz":1,)"
+                   R"("packets":{"received":1,"lost":0},"scans":{"dropped":0},)"
+                   R"("latency_ms":{"p50":1,"p99":1}}})")}) {
+    EXPECT_EQ(line.find('\x1b'), std::string::npos) << line;
+    EXPECT_EQ(line.find("\xc2\x9b"), std::string::npos) << line;
+    EXPECT_NE(line.find('?'), std::string::npos) << line;
+  }
 }
 
 }  // namespace

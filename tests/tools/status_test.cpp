@@ -17,7 +17,7 @@ using nlohmann::json;
 constexpr std::int64_t kNoon_ns = 1'700'049'600LL * 1'000'000'000;
 
 json health(const std::string& status = "tracking", const json& complaints = json::array()) {
-  return {{"v", "1.0"},
+  return {{"v", "2.0"},
           {"timestamp", 1.0},
           {"session", "0123456789abcdef"},
           {"health",
@@ -34,7 +34,7 @@ json health(const std::string& status = "tracking", const json& complaints = jso
 }
 
 json pose(const std::string& status = "tracking") {
-  return {{"v", "1.0"},
+  return {{"v", "2.0"},
           {"timestamp", 1.0},
           {"session", "0123456789abcdef"},
           {"seq", 17},

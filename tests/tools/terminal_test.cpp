@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/terminal/paint.hpp"
+#include "tools/terminal/printable.hpp"
 #include "tools/terminal/progress_bar.hpp"
 
 #include <gtest/gtest.h>
@@ -66,6 +67,17 @@ class Terminal {
  private:
   int fd_;
 };
+
+// ECMA-48: C0 and C1 are what terminals obey; C1 is U+0080 to U+009F, two bytes in UTF-8.
+TEST(Printable, LeavesNothingThatATerminalObeys) {
+  EXPECT_EQ(printable("tracking 10 Hz"), "tracking 10 Hz");
+  EXPECT_EQ(printable("\x1b]0;title\x07\r\n\x7f"), "?]0;title????");
+  EXPECT_EQ(printable("a\xc2\x9b"
+                      "2J"),
+            "a?2J");
+  EXPECT_EQ(printable("\u2581\u00b5"), "\u2581\u00b5") << "bars and letters stay";
+  EXPECT_EQ(printable(std::string_view("\0\xc2", 2)), "?\xc2");
+}
 
 TEST(Paint, NoColorIsHonoured) {
   const Terminal terminal;

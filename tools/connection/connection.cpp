@@ -3,6 +3,7 @@
 
 #include "daemon/message_head.hpp"
 #include "daemon/packet_message.hpp"
+#include "tools/terminal/printable.hpp"
 
 #include <boost/asio/buffer.hpp>
 #include <fmt/format.h>
@@ -79,7 +80,7 @@ void Connection::greet(Milliseconds patience) {
       if (!datagram) break;
       const json message = understood(*datagram);
       if (!message.contains("hello")) continue;
-      software_ = message["hello"].value("software", "lilod");
+      software_ = printable(message["hello"].value("software", "lilod"));
       if (!message["hello"].contains("token")) return;
       send({{"query", "hello"}});  // with the token it gave us
     }
@@ -96,8 +97,8 @@ json Connection::ask(const json& request, const std::string& kind, Milliseconds 
     json message = understood(*datagram);
     if (message.contains(kind)) return message;
     if (message.contains("error")) {
-      throw std::runtime_error(
-          fmt::format("{}: {}", to_string(address_), message["error"].value("reason", "refused")));
+      throw std::runtime_error(fmt::format("{}: {}", to_string(address_),
+                                           printable(message["error"].value("reason", "refused"))));
     }
   }
   throw std::runtime_error(no_answer(patience));
@@ -181,7 +182,7 @@ json Connection::understood(std::string_view datagram) {
   if (major_of(version) != major_of(kProtocolVersion)) {
     throw std::runtime_error(
         fmt::format("{}: expected protocol {}.x, found {}: use the lilo of that lilod",
-                    to_string(address_), major_of(kProtocolVersion), version));
+                    to_string(address_), major_of(kProtocolVersion), printable(version)));
   }
   const json& hello = message.contains("hello") ? message["hello"] : json::object();
   if (hello.contains("token")) token_ = hello["token"].get<std::string>();

@@ -5,6 +5,7 @@
 #include "tools/connection/connection.hpp"
 #include "tools/doctor/machine_checks.hpp"
 #include "tools/doctor/wire.hpp"
+#include "tools/terminal/printable.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -50,7 +51,8 @@ doctor::RunningDaemon ask_daemon(const Config& config) {
         health.value("packets", nlohmann::json::object()).value("received", std::uint64_t{0});
     daemon.silent_s = health.value("sensor_silent_s", 0.0);
     for (const auto& complaint : health.value("complaints", nlohmann::json::array()))
-      daemon.complaints += (daemon.complaints.empty() ? "" : ", ") + complaint.get<std::string>();
+      daemon.complaints +=
+          (daemon.complaints.empty() ? "" : ", ") + printable(complaint.get<std::string>());
   } catch (const std::runtime_error&) {  // none answers: that is the finding
   }
   return daemon;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/eval/pose_stream.hpp"
 
+#include "daemon/message_head.hpp"
 #include "daemon/pose_message.hpp"
 #include "tools/listen/pose_message.hpp"
 #include "tools/record/mcap_reader.hpp"
@@ -33,6 +34,9 @@ class Reader {
     PoseMessage message;
     const MessageKind kind = parse_message(line, message);
     if (kind == MessageKind::malformed) throw error("expected a datagram of lilod, found none");
+    if (kind == MessageKind::other_version) {
+      throw error(fmt::format("expected protocol {}, found another version", kProtocolVersion));
+    }
     if (kind == MessageKind::pose) add(message);
   }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/listen/listen_command.hpp"
 
+#include "daemon/message_head.hpp"
 #include "tools/cli.hpp"
 #include "tools/connection/connection.hpp"
 #include "tools/listen/pose_message.hpp"
 #include "tools/stop_signals.hpp"
+#include "tools/terminal/printable.hpp"
 #include "tools/text_file.hpp"
 
 #include <boost/asio/buffer.hpp>
@@ -45,9 +47,11 @@ class Listener {
     PoseMessage message;
     const MessageKind kind = parse_message(datagram, message);
     malformed_ += kind == MessageKind::malformed ? 1 : 0;
+    other_versions_ += kind == MessageKind::other_version ? 1 : 0;
+    if (kind == MessageKind::malformed || kind == MessageKind::other_version) return;
     if (kind == MessageKind::pose) take_pose(message);
     if (options_.json) {
-      fmt::print("{}\n", datagram);
+      fmt::print("{}\n", printable(datagram));
     } else if (kind == MessageKind::other) {
       fmt::print("{}", other_line(datagram));
     } else if (kind == MessageKind::pose) {
@@ -62,6 +66,10 @@ class Listener {
   [[nodiscard]] std::string summary() const {
     std::string text = fmt::format("{} poses, {} missed", poses_, missed_);
     if (malformed_ > 0) text += fmt::format(", {} datagrams not understood", malformed_);
+    if (other_versions_ > 0) {
+      text += fmt::format(", {} datagrams of another protocol than {}", other_versions_,
+                          kProtocolVersion);
+    }
     return text;
   }
 
@@ -81,7 +89,7 @@ class Listener {
 
   ListenOptions options_;
   std::optional<std::ofstream> tum_;
-  std::uint64_t poses_ = 0, missed_ = 0, malformed_ = 0, seq_ = 0;
+  std::uint64_t poses_ = 0, missed_ = 0, malformed_ = 0, other_versions_ = 0, seq_ = 0;
   std::string session_;
 };
 

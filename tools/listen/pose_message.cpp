@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/listen/pose_message.hpp"
 
+#include "daemon/message_head.hpp"
+#include "tools/terminal/printable.hpp"
+
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,7 +12,9 @@
 #include <array>
 #include <cmath>
 #include <ctime>
+#include <exception>
 #include <numbers>
+#include <stdexcept>
 
 namespace lilo {
 namespace {
@@ -17,6 +22,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kLatest_s = 9'000'000'000;  // UTC: in nanoseconds the year 2255 still fits
 
 std::optional<Matrix6d> covariance_from(const json& pose) {
   if (!pose.contains("covariance")) return std::nullopt;
@@ -43,6 +49,21 @@ std::vector<PoseMessage::Weak> weak_from(const json& pose) {
   return out;
 }
 
+std::string_view major_of(std::string_view version) { return version.substr(0, version.find('.')); }
+
+/// Of recordings that do not say, ours.
+bool has_our_version(const json& object) {
+  if (!object.contains("v")) return true;
+  const json& v = object["v"];
+  return v.is_string() && major_of(v.get_ref<const std::string&>()) == major_of(kProtocolVersion);
+}
+
+std::int64_t stamp_from(const json& stamp) {
+  const auto sec = stamp.at("sec").get<std::int64_t>(), nsec = stamp.at("nsec").get<std::int64_t>();
+  if (sec < 0 || sec > kLatest_s || nsec < 0 || nsec >= kSecond) throw std::out_of_range("stamp");
+  return sec * kSecond + nsec;
+}
+
 PoseMessage message_from(const json& object) {
   const json& pose = object.at("pose");
   const json& position = pose.at("position");
@@ -52,8 +73,7 @@ PoseMessage message_from(const json& object) {
   message.seq = object.at("seq").get<std::uint64_t>();
   message.session = object.value("session", "");
   message.status = pose.value("status", "");
-  message.pose.stamp_ns =
-      stamp.at("sec").get<std::int64_t>() * kSecond + stamp.at("nsec").get<std::int64_t>();
+  message.pose.stamp_ns = stamp_from(stamp);
   message.pose.pose.translation_m = {position.at("x").get<double>(), position.at("y").get<double>(),
                                      position.at("z").get<double>()};
   message.pose.pose.rotation = Eigen::Quaterniond(q.at("w").get<double>(), q.at("x").get<double>(),
@@ -97,7 +117,7 @@ std::string health_line(const json& object) {
   for (const json& complaint : health.at("complaints")) {
     line += ", " + complaint.get<std::string>();
   }
-  return line + "\n";
+  return printable(line) + "\n";
 }
 
 }  // namespace
@@ -105,10 +125,11 @@ std::string health_line(const json& object) {
 MessageKind parse_message(std::string_view datagram, PoseMessage& message) {
   const json object = json::parse(datagram, nullptr, /*allow_exceptions=*/false);
   if (!object.is_object()) return MessageKind::malformed;
+  if (!has_our_version(object)) return MessageKind::other_version;
   if (!object.contains("pose")) return MessageKind::other;
   try {
     message = message_from(object);
-  } catch (const json::exception&) {
+  } catch (const std::exception&) {  // of the parser, or of ours
     return MessageKind::malformed;
   }
   return MessageKind::pose;
@@ -139,8 +160,8 @@ std::string pose_line(const PoseMessage& message) {
   return fmt::format(
       "{:%H:%M:%S}.{:06d}  {:8d}  {:<12}  {:9.3f}  {:9.3f}  {:9.3f}   {:9.3f}  {:9.3f}  "
       "{:9.3f}{}{}\n",
-      utc, stamp_ns % kSecond / 1000, message.seq, message.status, rounded(t.x()), rounded(t.y()),
-      rounded(t.z()), rounded(angles.x()), rounded(angles.y()), rounded(angles.z()),
+      utc, stamp_ns % kSecond / 1000, message.seq, printable(message.status), rounded(t.x()),
+      rounded(t.y()), rounded(t.z()), rounded(angles.x()), rounded(angles.y()), rounded(angles.z()),
       deviation_columns(message), weak_column(message));
 }
 
@@ -148,7 +169,7 @@ std::string other_line(std::string_view datagram) {
   try {
     return health_line(json::parse(datagram));
   } catch (const json::exception&) {
-    return std::string(datagram) + "\n";
+    return printable(datagram) + "\n";
   }
 }
 

@@ -33,10 +33,12 @@ struct PoseMessage {
   std::vector<Weak> weak;  ///< the weakest first
 };
 
-enum class MessageKind : std::uint8_t { pose, other, malformed };
+enum class MessageKind : std::uint8_t { pose, other, other_version, malformed };
 
 /// `other`: a JSON object without a pose (health, hello); whoever listens ignores what it does not
-/// know. `malformed`: no JSON object, or a pose without its numbers; `message` is then untouched.
+/// know. `other_version`: of another major version of the protocol, where the same names may mean
+/// something else. `malformed`: no JSON object, or a pose without its numbers. `message` is
+/// untouched unless it is a pose.
 MessageKind parse_message(std::string_view datagram, PoseMessage& message);
 
 /// Rotations about fixed x, then y, then z (REP-103), in degrees.
@@ -50,7 +52,8 @@ std::string pose_heading();
 /// of both, and the weak directions.
 std::string pose_line(const PoseMessage& message);
 
-/// One line for any other datagram: the gist of a health report, the datagram itself else.
+/// One line for any other datagram: the gist of a health report, the datagram itself else. Control
+/// characters of what came are question marks, in pose_line() too.
 std::string other_line(std::string_view datagram);
 
 }  // namespace lilo

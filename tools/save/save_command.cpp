@@ -3,6 +3,7 @@
 
 #include "tools/connection/address_options.hpp"
 
+#include "tools/terminal/printable.hpp"
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -20,8 +21,8 @@ void run_save(const SaveOptions& options) {
   constexpr std::chrono::seconds kDisk{30};
   Connection lilod(options.address);
   const nlohmann::json done = lilod.ask({{"save", options.what}}, "done", kDisk).at("done");
-  fmt::print("{}: {} {}\n", done.value("file", ""), done.value("count", std::uint64_t{0}),
-             options.what == "map" ? "points" : "poses");
+  fmt::print("{}: {} {}\n", printable(done.value("file", "")),
+             done.value("count", std::uint64_t{0}), options.what == "map" ? "points" : "poses");
 }
 
 }  // namespace

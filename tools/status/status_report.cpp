@@ -3,6 +3,7 @@
 
 #include "tools/listen/pose_message.hpp"
 #include "tools/status/status_words.hpp"
+#include "tools/terminal/printable.hpp"
 
 #include <fmt/format.h>
 
@@ -180,7 +181,7 @@ std::vector<StatusRow> status_rows(const StatusReport& report) {
 }
 
 std::string to_text(const StatusRow& row, const Paint& paint) {
-  return fmt::format("{:<16}: {}\n", row.label, paint(row.colour, row.text));
+  return fmt::format("{:<16}: {}\n", printable(row.label), paint(row.colour, printable(row.text)));
 }
 
 std::string to_text(const StatusReport& report, const Paint& paint) {
