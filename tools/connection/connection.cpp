@@ -213,9 +213,9 @@ std::string Connection::no_answer(Milliseconds patience) const {
                                  std::chrono::duration<double>(patience).count());
   if (error || here.is_loopback()) return text;
   return text + fmt::format(
-                    ": is lilod running there, with subscribe.bind_address 0.0.0.0 and {} in "
+                    ": is lilod running there, with subscribe.bind_address {} and {} in "
                     "subscribe.allow?",
-                    here.to_string());
+                    here.is_v6() ? "\"::\"" : "0.0.0.0", here.to_string());
 }
 
 }  // namespace lilo
