@@ -170,6 +170,17 @@ TEST(Recording, TumHasAFileASession) {
             2 * std::filesystem::file_size(folder.path() + "/a_2.tum"));
 }
 
+TEST(Recording, TumReplacesNoOtherFile) {
+  const TemporaryFolder folder;
+  folder.write("a_2.tum", "precious");
+  Recording recording(folder.path() + "/a.tum");
+  recording.take(pose(0), kStart_ns);
+  recording.take(pose(0, "tracking", "b"), kStart_ns);
+  recording.finish();
+  EXPECT_EQ(std::filesystem::file_size(folder.path() + "/a_2.tum"), std::string("precious").size());
+  EXPECT_TRUE(std::filesystem::exists(folder.path() + "/a_3.tum"));
+}
+
 TEST(Recording, RefusesEndingsItDoesNotKnow) {
   EXPECT_THROW(Recording("/tmp/poses.csv"), std::runtime_error);
   EXPECT_THROW(Recording("/nonexistent/poses.mcap"), std::runtime_error);

@@ -18,10 +18,12 @@ TumFiles::TumFiles(std::string path) : path_(std::move(path)) { begin_next_file(
 void TumFiles::begin_next_file() {
   const std::filesystem::path first(path_);
   current_ = path_;
-  if (++files_ > 1) {
+  // Whether the first may be replaced is known; what else is there stays.
+  while (++files_ > 1) {
     current_ = (first.parent_path() /
                 fmt::format("{}_{}{}", first.stem().string(), files_, first.extension().string()))
                    .string();
+    if (!std::filesystem::exists(current_)) break;
   }
   file_ = create_text(current_);
 }
