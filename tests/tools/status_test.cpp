@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
 
 namespace lilo {
 namespace {
@@ -110,6 +112,7 @@ TEST(Top, TellsWhatChanged) {
   view.silence(5.0, kNoon_ns + 7'000'000'000);
   const std::string text = view.text(60, 100, Paint(false));
   EXPECT_NE(text.find("NO WORD for 5.0 s"), std::string::npos) << text;
+  EXPECT_NE(text.find("Status          : unknown, was tracking\n"), std::string::npos) << text;
   EXPECT_NE(text.find("12:00:01        : packets lost"), std::string::npos) << text;
   EXPECT_NE(text.find("12:00:02        : no longer: packets lost"), std::string::npos) << text;
   EXPECT_NE(text.find("12:00:07        : no word from lilod"), std::string::npos) << text;
@@ -127,16 +130,14 @@ TEST(Top, FitsTheWindow) {
   for (const std::size_t rows : {1U, 2U, 10U, 24U, 100U}) {
     EXPECT_LE(lines(view.text(rows, 80, Paint(false))), static_cast<std::ptrdiff_t>(rows));
   }
-  const std::string narrow = view.text(60, 40, Paint(false));
-  std::size_t start = 0;
-  for (std::size_t end = narrow.find('\n'); end != std::string::npos;
-       end = narrow.find('\n', start)) {
-    const std::string line = narrow.substr(start, end - start);
-    // A bar is one column wide and three bytes long.
-    if (line.find("latencies") == std::string::npos) {
-      EXPECT_LE(line.size(), 40U) << line;
+  for (const std::size_t columns : {18U, 40U}) {
+    std::istringstream narrow(view.text(60, columns, Paint(false)));
+    for (std::string line; std::getline(narrow, line);) {
+      // A bar is one column wide and three bytes long.
+      if (line.find("latencies") == std::string::npos) {
+        EXPECT_LE(line.size(), columns) << line;
+      }
     }
-    start = end + 1;
   }
 }
 

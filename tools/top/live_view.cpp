@@ -39,6 +39,13 @@ StatusRow fitted(StatusRow row, std::size_t columns) {
   return row;
 }
 
+/// What nobody has confirmed for seconds is not so now.
+StatusRow outdated(StatusRow row) {
+  if (row.label == "Status") return {row.label, "unknown, was " + row.text, Colour::bad};
+  row.colour = Colour::faint;
+  return row;
+}
+
 }  // namespace
 
 std::string bars(const std::deque<double>& values, std::size_t columns) {
@@ -124,7 +131,9 @@ std::string LiveView::text(std::size_t rows, std::size_t columns, const Paint& p
          Colour::bad});
   }
   if (!report_.health.is_null()) {
-    for (StatusRow& row : status_rows(report_)) lines.push_back(std::move(row));
+    for (StatusRow& row : status_rows(report_)) {
+      lines.push_back(silent_s_ > 0.0 ? outdated(std::move(row)) : std::move(row));
+    }
   } else {
     lines.push_back({"Daemon", fmt::format("{} at {}", report_.software, report_.address)});
   }
@@ -136,7 +145,8 @@ std::string LiveView::text(std::size_t rows, std::size_t columns, const Paint& p
   lines.resize(std::min(lines.size(), rows - std::min<std::size_t>(rows, 1)));
   std::string out;
   for (const StatusRow& row : lines) out += to_text(row, paint);
-  return out + paint(Colour::faint, "q, Ctrl-C       : ends") + "\n";
+  constexpr std::string_view kKeys = "q, Ctrl-C       : ends";
+  return out + paint(Colour::faint, kKeys.substr(0, columns)) + "\n";
 }
 
 }  // namespace lilo
