@@ -59,15 +59,16 @@ TEST_F(SimCommand, RefusesNumbersThatAreNone) {
   EXPECT_FALSE(fs::exists(folder_));
 }
 
-TEST_F(SimCommand, OverwritesItsOwnRecordingsOnly) {
+TEST_F(SimCommand, OverwritesNothingUnasked) {
   EXPECT_EQ(complaint("--duration-s 0.3"), "");
-  EXPECT_EQ(complaint("--duration-s 0.4"), "") << "its own";
+  const std::string recording = content("data.pcap");
+  EXPECT_NE(complaint("--duration-s 0.4").find("found a recording of lilo sim (--force"),
+            std::string::npos);
+  EXPECT_EQ(content("data.pcap"), recording);
   fs::remove_all(folder_);
   write("data.pcap");
-  EXPECT_NE(complaint("--duration-s 0.3").find("found other files"), std::string::npos);
+  EXPECT_NE(complaint("--duration-s 0.3").find("found files (--force"), std::string::npos);
   EXPECT_EQ(content("data.pcap"), "mine");
-  write("meta.json");
-  EXPECT_NE(complaint("--duration-s 0.3").find("found other files"), std::string::npos);
   EXPECT_EQ(complaint("--duration-s 0.3 --force"), "");
   EXPECT_GT(fs::file_size(folder_ + "/data.pcap"), 1000U);
 }

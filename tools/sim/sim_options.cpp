@@ -173,16 +173,16 @@ std::int64_t parse_utc_ns(const std::string& text) {
 
 void add_options(CLI::App& command, SimArguments& arguments) {
   command
-      .add_option("OUT_DIR", arguments.folder,
-                  "Folder to write to, empty or of an earlier lilo sim; made if missing")
+      .add_option("OUT_DIR", arguments.folder, "Folder to write to, an empty one; made if missing")
       ->required()
       ->type_name("");
   add_motion(command, arguments.options);
   add_sensor(command, arguments.options.sensor);
   add_clocks(command, arguments);
   add_faults(command, arguments.options);
-  command.add_flag("--force", arguments.force,
-                   "Write to OUT_DIR even if it holds files that are not lilo sim's");
+  command.add_flag(
+      "--force", arguments.force,
+      "Write to OUT_DIR even if it is not empty; files of the same names are replaced");
   command.add_flag("--quiet", arguments.quiet, "No progress bar");
 }
 
@@ -192,11 +192,10 @@ void check_folder(const SimArguments& arguments) {
   if (!std::filesystem::is_directory(folder)) {
     throw CLI::ValidationError("OUT_DIR", arguments.folder + ": expected a folder, found a file");
   }
-  if (std::filesystem::is_empty(folder) || is_made_by_sim(arguments.folder)) return;
-  throw CLI::ValidationError(
-      "OUT_DIR", arguments.folder +
-                     ": expected an empty folder or one of an earlier lilo sim, found other files "
-                     "(--force writes there nevertheless)");
+  if (std::filesystem::is_empty(folder)) return;
+  const char* const found = is_made_by_sim(arguments.folder) ? "a recording of lilo sim" : "files";
+  throw CLI::ValidationError("OUT_DIR", arguments.folder + ": expected an empty folder, found " +
+                                            found + " (--force writes there nevertheless)");
 }
 
 void settle(const CLI::App& command, SimArguments& arguments) {

@@ -57,7 +57,7 @@ std::vector<std::string> command(const Drive& drive, const Studio& studio,
   const std::string seed = fmt::format("{}", *drive.seed);
   const bool own = drive.world.source == Source::sim;
   std::vector<std::string> words =
-      own ? std::vector<std::string>{studio.lilo, "sim", folder, "--quiet"}
+      own ? std::vector<std::string>{studio.lilo, "sim", folder, "--quiet", "--force"}
           : std::vector<std::string>{studio.velosim};
   words.insert(words.end(), drive.world.arguments.begin(), drive.world.arguments.end());
   words.insert(words.end(), {"--seed", seed});
