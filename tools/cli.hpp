@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "config/suggest.hpp"
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
+#include <vector>
 
 namespace lilo {
 
@@ -45,6 +51,34 @@ inline CLI::Validator count() {
         return good ? std::string() : "expected a whole number from 0 on, found '" + text + "'";
       },
       "");
+}
+
+/// Option check: one of these names. CLI11's own prints its table.
+inline CLI::Validator one_of(const std::vector<std::string>& names) {
+  return CLI::Validator(
+      [names](std::string& text) {
+        if (std::find(names.begin(), names.end(), text) != names.end()) return std::string();
+        const std::string near = closest_word(text, names);
+        return fmt::format("expected one of {}, found '{}'{}", fmt::join(names, ", "), text,
+                           near.empty() ? "" : fmt::format(", did you mean {}?", near));
+      },
+      "");
+}
+
+/// "street|park": what the help page and completion know an option's values by.
+inline std::string choices(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, "|"));
+}
+
+/// An option whose value has one of these names.
+template <typename Value>
+CLI::Option* choice(CLI::Option* option, const std::map<std::string, Value>& values) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values) names.push_back(name);
+  // The last transformation is the first to run.
+  return option->transform(CLI::CheckedTransformer(values).description(""))
+      ->transform(one_of(names))
+      ->type_name(choices(names));
 }
 
 }  // namespace lilo

@@ -13,20 +13,25 @@
 namespace lilo {
 namespace {
 
+Key key_at(const std::string& path) {
+  const std::vector<Key> keys = config_keys();
+  return *std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.path == path; });
+}
+
 /// The choice `name` for the key at `path`, as `option` of the command line asks.
 void choose(Config& config, const char* option, const char* path, const std::string& name) {
-  const std::vector<Key> keys = config_keys();
-  const auto key =
-      std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.path == path; });
-  const std::vector<std::string>& known = key->choices;
+  const Key key = key_at(path);
+  const std::vector<std::string>& known = key.choices;
   if (std::find(known.begin(), known.end(), name) == known.end()) {
     throw std::runtime_error(
         fmt::format("{}: expected one of {}, found {}", option, fmt::join(known, ", "), name));
   }
-  key->set(config, name);
+  key.set(config, name);
 }
 
 }  // namespace
+
+std::vector<std::string> choices_of_key(const std::string& path) { return key_at(path).choices; }
 
 Config tool_config(const std::string& file, const std::string& profile, const std::string& sensor) {
   Config config = file.empty() ? Config{} : load_config(file);

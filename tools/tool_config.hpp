@@ -4,6 +4,7 @@
 #include "config/config.hpp"
 
 #include <string>
+#include <vector>
 
 namespace lilo {
 
@@ -12,5 +13,8 @@ namespace lilo {
 /// std::runtime_error, one line for every mistake.
 Config tool_config(const std::string& file, const std::string& profile = {},
                    const std::string& sensor = {});
+
+/// What the key at `path` may be, where it is one of several names.
+std::vector<std::string> choices_of_key(const std::string& path);
 
 }  // namespace lilo

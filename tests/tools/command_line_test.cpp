@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tools/cli.hpp"
 #include "tools/command_line/completion.hpp"
 #include "tools/command_line/suggestion.hpp"
 
@@ -18,6 +19,7 @@ class Tool : public testing::Test {
     CLI::App* record = app.add_subcommand("record", "Write what comes");
     record->add_option("FILE", text_);
     record->add_option("--count", number_, "So many");
+    record->add_option("--rate", number_, "How fast")->type_name("0..60");
     record->add_option("--how", text_, "In which way")->type_name("fast|slow");
     record->add_flag("--force", flag_, "At any price");
     CLI::App* bench = app.add_subcommand("bench", "Measure");
@@ -58,7 +60,7 @@ TEST_F(Tool, CompletesCommands) {
 }
 
 TEST_F(Tool, CompletesOptions) {
-  EXPECT_EQ(completed({"record", "--"}), "--help --count --how --force ");
+  EXPECT_EQ(completed({"record", "--"}), "--help --count --rate --how --force ");
   EXPECT_EQ(completed({"record", "--force", "--c"}), "--count ");
 }
 
@@ -67,6 +69,7 @@ TEST_F(Tool, CompletesValues) {
   EXPECT_EQ(completed({"record", "--how", ""}), "fast slow ");
   EXPECT_EQ(completed({"record", "--how", "s"}), "slow ");
   EXPECT_EQ(completed({"record", "--count", ""}), "");  // a number: nothing to offer
+  EXPECT_EQ(completed({"record", "--rate", ""}), "");
   EXPECT_EQ(completed({"record", "--count", "3", ""}), "FILES");
   EXPECT_EQ(completed({"record", "--force", ""}), "FILES");  // a flag takes no value
 }
@@ -86,6 +89,29 @@ TEST_F(Tool, SuggestsTheOptionThatWasMeant) {
             "--cuont: no such option, did you mean --count? (lilo record --help)");
   EXPECT_EQ(explained({"record", "--cuont=3"}),
             "--cuont: no such option, did you mean --count? (lilo record --help)");
+}
+
+enum class Speed : std::uint8_t { slow, fast };
+
+TEST(OneOf, TakesNamesAndTellsThemToWhoeverMistypes) {
+  const auto parsed = [](const std::string& word) -> std::string {
+    CLI::App command{"x", "x"};
+    Speed speed = Speed::slow;
+    choice<Speed>(command.add_option("--speed", speed),
+                  {{"slow", Speed::slow}, {"fast", Speed::fast}});
+    EXPECT_EQ(command.get_option("--speed")->get_type_name(), "fast|slow");
+    try {
+      command.parse(std::vector<std::string>{word, "--speed"});
+    } catch (const CLI::ParseError& error) {
+      return error.what();
+    }
+    return speed == Speed::fast ? "is fast" : "is slow";
+  };
+  EXPECT_EQ(parsed("fast"), "is fast");
+  EXPECT_EQ(parsed("slow"), "is slow");
+  EXPECT_EQ(parsed("fats"),
+            "--speed: expected one of fast, slow, found 'fats', did you mean fast?");
+  EXPECT_EQ(parsed("0"), "--speed: expected one of fast, slow, found '0'");
 }
 
 TEST_F(Tool, OtherMistakesAreToldAsTheyAre) {

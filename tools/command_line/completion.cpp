@@ -26,7 +26,8 @@ void add_values(const CLI::Option& option, Completion& out) {
   const std::vector<Candidate> choices = choices_of(option);
   out.candidates.insert(out.candidates.end(), choices.begin(), choices.end());
   const std::string type = option.get_type_name();
-  const bool number = type == "UINT" || type == "INT" || type == "FLOAT" || type == "NUMBER";
+  const bool number = type == "UINT" || type == "INT" || type == "FLOAT" || type == "NUMBER" ||
+                      type.find("..") != std::string::npos;  // "0..60"
   out.files = out.files || (choices.empty() && !number);
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tools/cli.hpp"
 #include "tools/command_line/completion.hpp"
 #include "tools/command_line/completion_scripts.hpp"
 
@@ -14,7 +15,7 @@ void add_completion_command(CLI::App& app) {
   sub->footer(
       "\nFor this shell: source <(lilo completion bash). The package lilo-tools installs it.");
   sub->add_option("SHELL", *shell, "bash or zsh")
-      ->check(CLI::IsMember({"bash", "zsh"}).description(""))
+      ->check(one_of({"bash", "zsh"}))
       ->type_name("bash|zsh")
       ->required();
   sub->callback([shell] { fmt::print("{}", *shell == "zsh" ? kZshCompletion : kBashCompletion); });

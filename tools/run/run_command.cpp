@@ -113,8 +113,10 @@ void add_run_command(CLI::App& app) {
                   "pcap (- is standard input), folder of KITTI scans or KITTI sequence")
       ->required();
   sub->add_option("--config", options->config, "YAML configuration; default: what is built in");
-  sub->add_option("--profile", options->profile, "Odometry profile, over the configuration's");
-  sub->add_option("--sensor", options->sensor, "Sensor model, over the configuration's");
+  sub->add_option("--profile", options->profile, "Odometry profile, over the configuration's")
+      ->type_name(choices(choices_of_key("odometry.profile")));
+  sub->add_option("--sensor", options->sensor, "Sensor model, over the configuration's")
+      ->type_name(choices(choices_of_key("sensor.model")));
   sub->add_option("--tum", options->tum, "Write the poses: t x y z qx qy qz qw");
   sub->add_option("--kitti", options->kitti, "Write the poses: 12 numbers, sensor frame");
   sub->add_option("--poses", options->poses,
@@ -132,8 +134,7 @@ void add_run_command(CLI::App& app) {
       ->needs(map);
   const std::map<std::string, MapColor> colors{{"height", MapColor::height},
                                                {"intensity", MapColor::intensity}};
-  sub->add_option("--map-color", options->map_color, "What its colours tell: height, intensity")
-      ->transform(CLI::CheckedTransformer(colors))
+  choice(sub->add_option("--map-color", options->map_color, "What its colours tell"), colors)
       ->needs(map);
   sub->add_option("--truth", options->truth,
                   "True poses for the picture, or the folder of a data set");

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/save/save_command.hpp"
 
+#include "tools/cli.hpp"
 #include "tools/connection/address_options.hpp"
-
 #include "tools/terminal/printable.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -32,7 +33,7 @@ void add_save_command(CLI::App& app) {
   CLI::App* sub =
       app.add_subcommand("save", "Have lilod write its map or trajectory into its state directory");
   sub->add_option("WHAT", options->what, "map: the local map, PCD; trajectory: the session, TUM")
-      ->check(CLI::IsMember({"map", "trajectory"}).description(""))
+      ->check(one_of({"map", "trajectory"}))
       ->type_name("map|trajectory")
       ->required();
   add_address_options(*sub, options->address);

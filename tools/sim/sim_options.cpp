@@ -30,12 +30,7 @@ class Group {
   template <typename Value>
   void choice(const char* option, Value& value, const std::map<std::string, Value>& values,
               const char* about) {
-    std::string names;
-    for (const auto& entry : values) names += (names.empty() ? "" : "|") + entry.first;
-    command_.add_option(option, value, about)
-        ->transform(CLI::CheckedTransformer(values).description(""))
-        ->type_name(names)
-        ->group(name_);
+    lilo::choice(command_.add_option(option, value, about), values)->group(name_);
   }
   void flag(const char* option, bool& value, const char* about) {
     command_.add_flag(option, value, about)->group(name_);
@@ -55,10 +50,11 @@ void add_motion(CLI::App& command, SimOptions& options) {
   std::vector<std::string> worlds;
   for (const WorldInfo& world : known_worlds()) worlds.push_back(world.name);
   group.text("--world", options.world, "Where to drive (list below)")
-      ->check(CLI::IsMember(worlds).description(""))
-      ->type_name("NAME")
+      ->check(one_of(worlds))
+      ->type_name(choices(worlds))
       ->capture_default_str();
   command.add_option("--seed", options.seed, "Another number: another world, other noise")
+      ->check(count())
       ->type_name("N")
       ->capture_default_str()
       ->group("World and motion");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/view/view_command.hpp"
 
+#include "tools/cli.hpp"
 #include "tools/tool_config.hpp"
 #include "tools/view/access.hpp"
 #include "tools/view/daemon_link.hpp"
@@ -195,7 +196,8 @@ void add_view_command(CLI::App& app) {
                   "Site whose pages may connect by WebSocket, as Foxglove's")
       ->capture_default_str();
   sub->add_option("--config", options->config, "YAML configuration for the recording");
-  sub->add_option("--sensor", options->sensor, "Sensor model, over the configuration's");
+  sub->add_option("--sensor", options->sensor, "Sensor model, over the configuration's")
+      ->type_name(choices(choices_of_key("sensor.model")));
   sub->callback([options] { run_view(*options); });
 }
 

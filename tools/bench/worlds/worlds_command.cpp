@@ -81,7 +81,7 @@ void add_choices(CLI::App& sub, WorldsOptions& options) {
   sub.add_option("--only", options.only, "Worlds whose name matches this regular expression");
   sub.add_option("--seeds", options.seeds,
                  "Those constants may be chosen on, those that are only reported, or both")
-      ->check(CLI::IsMember({"choose", "report", "all"}).description(""))
+      ->check(one_of({"choose", "report", "all"}))
       ->type_name("choose|report|all")
       ->capture_default_str();
   sub.add_option("--config", options.config,
