@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tests/daemon/on_a_terminal.hpp"
 #include "tests/daemon/operator.hpp"
 
 #include <csignal>
-#include <cstdlib>
-#include <fcntl.h>
 #include <map>
-#include <poll.h>
-#include <pty.h>
 #include <sstream>
-#include <sys/ioctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 /// What goes along with a running daemon: record, listen, top, the ROS 2 package.
 namespace lilo {
@@ -67,83 +61,14 @@ TEST_F(Follower, ListenSubscribesWhenThePortIsTaken) {
   EXPECT_NE(listened.output.find("roll deg"), std::string::npos);
 }
 
-/// `lilo top` on a terminal of its own.
-class TopOnATerminal {
- public:
-  TopOnATerminal(const std::vector<std::string>& words, unsigned short rows,
-                 unsigned short columns) {
-    winsize window{.ws_row = rows, .ws_col = columns};
-    pid_ = forkpty(&fd_, nullptr, nullptr, &window);
-    if (pid_ != 0) return;
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    setenv("TERM", "xterm", 1);
-    unsetenv("NO_COLOR");
-    execv(arguments[0], arguments.data());
-    _exit(127);
-  }
-  ~TopOnATerminal() {
-    kill(pid_, SIGKILL);
-    close(fd_);
-    waitpid(pid_, nullptr, 0);
-  }
-  TopOnATerminal(const TopOnATerminal&) = delete;
-  TopOnATerminal& operator=(const TopOnATerminal&) = delete;
-
-  /// Everything it has written, once that holds `text`; or after ten seconds.
-  std::string until(const std::string& text) {
-    const auto deadline = std::chrono::steady_clock::now() + seconds(10);
-    while (written_.find(text) == std::string::npos &&
-           std::chrono::steady_clock::now() < deadline) {
-      pollfd waiting{fd_, POLLIN, 0};
-      if (poll(&waiting, 1, 200) <= 0) continue;
-      std::array<char, 4096> bytes{};
-      const ssize_t size = read(fd_, bytes.data(), bytes.size());
-      if (size <= 0) break;
-      written_.append(bytes.data(), static_cast<std::size_t>(size));
-    }
-    return written_;
-  }
-  /// All of it, and what it is still writing.
-  void forget() {
-    std::array<char, 65536> bytes{};
-    pollfd waiting{fd_, POLLIN, 0};
-    while (poll(&waiting, 1, 0) > 0 && read(fd_, bytes.data(), bytes.size()) > 0) {
-    }
-    written_.clear();
-  }
-  void press(char key) const { EXPECT_EQ(write(fd_, &key, 1), 1); }
-  void resize(unsigned short rows, unsigned short columns) const {
-    const winsize window{.ws_row = rows, .ws_col = columns};
-    EXPECT_EQ(ioctl(fd_, TIOCSWINSZ, &window), 0);
-  }
-  /// The exit code.
-  [[nodiscard]] int wait() const {
-    int status = 0;
-    for (int k = 0; k < 100; ++k) {
-      if (waitpid(pid_, &status, WNOHANG) == pid_)
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-      std::this_thread::sleep_for(milliseconds(50));
-    }
-    return -2;
-  }
-
- private:
-  int fd_ = -1;
-  pid_t pid_ = -1;
-  std::string written_;
-};
-
 TEST_F(Follower, TopFollowsTheWindowAndRestoresTheTerminal) {
   const Turning turning(lilod);
-  constexpr char kCtrlC = 3;
-  for (const char key : {'q', kCtrlC}) {
-    TopOnATerminal top(words({"top"}), 40, 100);
+  for (const std::string key : {"q", "\x03"}) {  // or Ctrl-C
+    OnATerminal top(words({"top"}), {.rows = 40, .columns = 100});
     const std::string screen = top.until("Processing");
     EXPECT_NE(screen.find("\033[?1049h"), std::string::npos);
     EXPECT_NE(screen.find("Processing"), std::string::npos) << screen;
-    top.resize(5, 100);
+    top.resize({.rows = 5, .columns = 100});
     std::this_thread::sleep_for(milliseconds(600));
     top.forget();
     const std::string small = top.until("ends");

@@ -161,21 +161,5 @@ TEST(CommandLine, VersionHasBuildAndRevision) {
   EXPECT_EQ(version.rfind("lilo " LILO_VERSION " (", 0), 0U) << version;
 }
 
-/// What bash offers for a command line, by the script that is shipped.
-std::string completions(const std::string& line_words, int at) {
-  const TemporaryFile script("complete.sh",
-                             "source <(" + kLilo + " completion bash)\nlilo() { " + kLilo +
-                                 " \"$@\"; }\nCOMP_WORDS=(" + line_words +
-                                 ")\nCOMP_CWORD=" + std::to_string(at) +
-                                 "\ncompopt() { :; }\n_lilo\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n");
-  return run_to_end({"/bin/bash", script.path()}).output;
-}
-
-TEST(Completion, BashOffersCommandsOptionsAndChoices) {
-  EXPECT_EQ(completions("lilo sta", 1), "status\n");
-  EXPECT_EQ(completions("lilo status --j", 2), "--json\n");
-  EXPECT_EQ(completions("lilo save ''", 2), "map\ntrajectory\n");
-}
-
 }  // namespace
 }  // namespace lilo
