@@ -7,6 +7,7 @@
 #include "daemon/log.hpp"
 #include "daemon/paper_program.hpp"
 #include "daemon/service.hpp"
+#include "drivers/scan_builder.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -28,6 +29,15 @@ struct Options {
   bool print_reference = false;
 };
 
+// Without it a restart would end in the same way, again and again.
+void check_calibration(const Options& options, const SensorConfig& sensor) {
+  try {
+    (void)configured_calibration(sensor);
+  } catch (const DriverError& error) {
+    throw ConfigError(options.config_path + ": sensor.calibration_file: " + error.what());
+  }
+}
+
 int run(const Options& options, char** argv) {
   if (options.print_reference) {
     std::cout << print_reference();
@@ -42,8 +52,12 @@ int run(const Options& options, char** argv) {
   if (!has_profile(config.odometry.profile))
     throw ConfigError(options.config_path + ": " + become_paper_program(argv));
   if (options.print_config) std::cout << print_config(config);
-  if (options.check_config) std::cout << options.config_path << ": ok\n";
-  if (options.print_config || options.check_config) return kSuccess;
+  if (options.print_config && !options.check_config) return kSuccess;
+  check_calibration(options, config.sensor);
+  if (options.check_config) {
+    std::cout << options.config_path << ": ok\n";
+    return kSuccess;
+  }
   start_log(config.log.level, instance_name(options.config_path));
   Service(config, options.config_path).run();
   return kSuccess;

@@ -5,7 +5,9 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -88,10 +90,14 @@ Calibration read_yaml(const std::string& path, const std::string& text) {
   return calibration;
 }
 
+// A pipe would be waited for, for ever.
 std::string read_text(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    throw DriverError(path + ": expected a calibration file, found " +
+                      (error ? error.message() : "no regular file"));
   std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path))
-    throw DriverError(path + ": calibration cannot be opened");
+  if (!in) throw DriverError(path + ": calibration cannot be opened: " + std::strerror(errno));
   constexpr std::size_t kMaxBytes = 1U << 20U;
   std::string text(kMaxBytes, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -26,7 +26,8 @@ enum class Outcome : std::uint8_t {
   malformed,
 };
 
-// Throws where the configured sensor cannot have this calibration.
+}  // namespace
+
 std::optional<Calibration> configured_calibration(const SensorConfig& config) {
   if (config.calibration_file.empty()) return std::nullopt;
   Calibration calibration = load_calibration(config.calibration_file);
@@ -37,8 +38,6 @@ std::optional<Calibration> configured_calibration(const SensorConfig& config) {
                       " lasers of a " + table->name + ", found " + std::to_string(count));
   return calibration;
 }
-
-}  // namespace
 
 struct ScanBuilder::Impl {
   Impl(const SensorConfig& config, Scan& target, ScanSink& sink)
@@ -179,11 +178,11 @@ Outcome ScanBuilder::Impl::feed_data(const PacketView& packet) {
 
 // The table to read a packet with, null to refuse it.
 const SensorTable* ScanBuilder::Impl::accept(const SensorIdentity& identity,
-  if (!is_readable(identity, model, ignore_product)) return nullptr;
                                              std::int64_t received_ns) const {
+  if (!is_readable(identity, model, ignore_product)) return nullptr;
   if (model == SensorModel::automatic) {
-    const bool another = identity.table != nullptr && seen_model != SensorModel::automatic &&
-                         identity.table->model != seen_model;
+    const bool another =
+        seen_model != SensorModel::automatic && identity.table->model != seen_model;
     const bool replaceable = std::abs(received_ns - model_heard_ns) > kReplaceableNs;
     return another && !replaceable ? nullptr : identity.table;
   }

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "core/scan.hpp"
+#include "drivers/calibration.hpp"
 #include "drivers/packet_source.hpp"
 #include "drivers/sensor_config.hpp"
 #include "drivers/sensor_status.hpp"
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 namespace lilo {
 
@@ -51,6 +53,10 @@ struct DriverCounts {
 };
 
 struct Calibration;
+
+/// That of SensorConfig::calibration_file, if it names one. Throws DriverError when it cannot be
+/// read or is of another number of lasers than the configured sensor.
+std::optional<Calibration> configured_calibration(const SensorConfig& config);
 
 /// Packets to scans: finds the model, decodes, cuts by azimuth, keeps the sensor's clock.
 /// One thread; nothing a packet holds can harm it. A scan that is written gets memory for all that

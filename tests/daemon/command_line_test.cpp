@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace lilo {
 namespace {
@@ -85,6 +87,35 @@ TEST(CommandLine, BadFilesAreOneLineEach) {
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_EQ(missing.error,
             "/nonexistent.yaml: expected a readable YAML file, found: No such file or directory\n");
+}
+
+// No sensor can start with a bad calibration, and a restart would not mend it. A pipe is not waited
+// for.
+TEST(CommandLine, BadCalibrationsAreBadConfigurations) {
+  const TemporaryFile rubbish("rubbish.yaml", "lasers: 3\n");
+  const std::string pipe = testing::TempDir() + "lilo_pipe_" + std::to_string(getpid());
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  struct Case {
+    std::string file;
+    const char* says;
+  };
+  for (const Case& c : {Case{"/nonexistent/db.xml", "found No such file or directory"},
+                        Case{rubbish.path(), "expected a list \"lasers\""},
+                        Case{pipe, "expected a calibration file, found no regular file"}}) {
+    const TemporaryFile config("calibrated.yaml",
+                               "sensor:\n  model: hdl64e\n  calibration_file: " + c.file + "\n");
+    for (const bool check : {true, false}) {
+      std::vector<std::string> words{kLilod, "--config", config.path()};
+      if (check) words.emplace_back("--check-config");
+      const Finished run = run_to_end(words);
+      EXPECT_EQ(run.exit_code, 2) << c.file;
+      EXPECT_EQ(lines(run.error), 1) << run.error;
+      EXPECT_EQ(run.error.rfind(config.path() + ": sensor.calibration_file: " + c.file, 0), 0U)
+          << run.error;
+      EXPECT_NE(run.error.find(c.says), std::string::npos) << run.error;
+    }
+  }
+  std::filesystem::remove(pipe);
 }
 
 // An address that is not this computer's: one line, and no READY.
