@@ -15,7 +15,12 @@ MetricsWriter::~MetricsWriter() {
 }
 
 std::error_code MetricsWriter::write(const std::string& path, std::string_view text) {
-  if (path.empty() || writing_.load(std::memory_order_acquire)) return {};
+  if (path.empty()) return {};
+  if (writing_.load(std::memory_order_acquire)) {
+    const bool stalled = ++left_out_ > kMostLeftOut;
+    return stalled ? std::make_error_code(std::errc::device_or_resource_busy) : std::error_code();
+  }
+  left_out_ = 0;
   const std::error_code error = error_;
   if (!thread_.joinable()) text_.reserve(2 * text.size());  // its numbers grow longer
   path_ = path;

@@ -18,6 +18,8 @@ class MetricsWriter {
  public:
   using Replace = std::error_code (*)(const std::string& path, std::string_view text);
 
+  static constexpr int kMostLeftOut = 4;  ///< the publisher gives one text a second
+
   /// Throws std::system_error when the system has no file descriptor left. `replace`: for tests,
   /// what writes a file.
   explicit MetricsWriter(Replace replace = replace_file) : replace_(replace) {}
@@ -27,7 +29,8 @@ class MetricsWriter {
   MetricsWriter& operator=(const MetricsWriter&) = delete;
 
   /// An empty path: there is no file. While the text before is still being written, this one is
-  /// left out. Why the last one could not be written, or nothing. The first call with a file starts
+  /// left out, and more than kMostLeftOut in a row are an error (device_or_resource_busy). Why the
+  /// last one could not be written, or nothing. The first call with a file starts
   /// the thread, so that it comes after the process has its memory locked and its stacks limited,
   /// and throws std::system_error when there is none.
   std::error_code write(const std::string& path, std::string_view text);
@@ -37,6 +40,7 @@ class MetricsWriter {
 
   Wakeup given_{Wakeup::Mode::blocking};
   std::atomic<bool> stop_{false};
+  int left_out_ = 0;  // in a row; the caller's
   /// Whose the three below are: the thread's while it is set, else the caller's.
   std::atomic<bool> writing_{false};
   std::string path_, text_;
