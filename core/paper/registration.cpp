@@ -68,6 +68,7 @@ struct Search {
   const LocalMap& map;
   double radius_m;
   double stay_m;  ///< a feature that moved less keeps its match
+  std::int64_t& neighbours_left;
   Primitive (*fit)(const Cloud&, const std::vector<int>&);
 };
 
@@ -77,8 +78,11 @@ void update(const Search& search, const Point& point, const Pose& T, Match& matc
   q.getVector3fMap() = (T * point.getVector3fMap().cast<double>()).cast<float>();
   const auto stay_m = static_cast<float>(search.stay_m);
   if ((q.getVector3fMap() - match.sought_at).squaredNorm() < stay_m * stay_m) return;
+  if (search.neighbours_left <= 0) return;
+  const std::vector<int>& neighbours = search.map.neighbours(q, search.radius_m);
+  search.neighbours_left -= static_cast<std::int64_t>(neighbours.size());
   match.sought_at = q.getVector3fMap();
-  match.primitive = search.fit(search.map.cloud(), search.map.neighbours(q, search.radius_m));
+  match.primitive = search.fit(search.map.cloud(), neighbours);
 }
 
 void add_edges(const Cloud& edges, const Search& search, const Pose& T, double huber_m,
@@ -141,15 +145,15 @@ PlaneResidual plane_residual(const Pose& T, const Eigen::Vector3d& p, const Prim
 
 Alignment align(const Cloud& edges, const Cloud& surfaces, const LocalMap& edge_map,
                 const LocalMap& surface_map, const Pose& guess, double search_m,
-                const PaperConfig& config) {
+                const PaperConfig& config, std::int64_t& neighbours_left) {
   constexpr double kRotationEnough_rad = 1e-4;
   constexpr double kTranslationEnough_m = 1e-3;
   Alignment result;
   result.T_odom_sensor = guess;
   Pose& T = result.T_odom_sensor;
   const double stay_m = config.search_again * search_m;
-  const Search lines{edge_map, search_m, stay_m, fit_line};
-  const Search planes{surface_map, search_m, stay_m, fit_plane};
+  const Search lines{edge_map, search_m, stay_m, neighbours_left, fit_line};
+  const Search planes{surface_map, search_m, stay_m, neighbours_left, fit_plane};
   Matches edge_matches(edges.size());
   Matches surface_matches(surfaces.size());
   while (result.iterations < config.max_iterations && !result.converged) {
@@ -157,7 +161,7 @@ Alignment align(const Cloud& edges, const Cloud& surfaces, const LocalMap& edge_
     add_edges(edges, lines, T, config.huber_m, edge_matches, normal);
     add_surfaces(surfaces, planes, T, config.huber_m, surface_matches, normal);
     result.correspondences = normal.count;
-    if (normal.count < kMinCorrespondences) break;
+    if (normal.count < kMinCorrespondences || neighbours_left <= 0) break;
     const Vector6d step = normal.H.ldlt().solve(normal.b);
     if (!step.allFinite()) break;
     T.rotation = (so3_exp(step.head<3>()) * T.rotation).normalized();

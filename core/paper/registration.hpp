@@ -4,6 +4,8 @@
 #include "core/odometry_config.hpp"
 #include "core/paper/local_map.hpp"
 
+#include <cstdint>
+
 namespace lilo::paper {
 
 /// A straight line or a plane fitted to map points: a point of it (P^l of Eqs. 21 and 23, here
@@ -54,9 +56,10 @@ struct Alignment {
 /// Eq. 20: T* = argmin sum f_E^2 + sum f_S^2 by Gauss-Newton from `guess`, correspondences within
 /// `search_m`. The print sums distances, which Gauss-Newton cannot minimise: here their squares,
 /// under Huber's weights. It is silent on how often correspondences are sought: here again when a
-/// step has moved the feature by `search_again` of `search_m`.
+/// step has moved the feature by `search_again` of `search_m`. It ends unconverged when it has seen
+/// so many neighbours that `neighbours_left`, from which they are taken, is not above zero.
 Alignment align(const Cloud& edges, const Cloud& surfaces, const LocalMap& edge_map,
                 const LocalMap& surface_map, const Pose& guess, double search_m,
-                const PaperConfig& config);
+                const PaperConfig& config, std::int64_t& neighbours_left);
 
 }  // namespace lilo::paper

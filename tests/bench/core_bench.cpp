@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -234,8 +236,11 @@ void paper_correspondences(benchmark::State& state) {
   PaperConfig config;
   config.max_iterations = 1;
   int found = 0;
-  for (auto _ : state)
-    found = paper::align(*edges, *surfaces, edge_map, surface_map, {}, 1.0, config).correspondences;
+  for (auto _ : state) {
+    std::int64_t left = std::numeric_limits<std::int64_t>::max();
+    found = paper::align(*edges, *surfaces, edge_map, surface_map, {}, 1.0, config, left)
+                .correspondences;
+  }
   state.counters["correspondences"] = found;
 }
 

@@ -120,14 +120,31 @@ TEST(Alignment, MovingTheWholeProblemMovesTheAnswer) {
   for (int k = 0; k < 8; ++k) {
     const Pose X{so3_exp(random_vector(rng, 2.0)), random_vector(rng, 20.0)};
     const Corner corner(X);
+    std::int64_t left = 1'000'000;
     const Alignment found = align(corner.edge_features, corner.surface_features, corner.edges,
-                                  corner.surfaces, X * off, 1.0, {});
+                                  corner.surfaces, X * off, 1.0, {}, left);
     EXPECT_TRUE(found.converged);
     EXPECT_GT(found.correspondences, 200);
     const Pose error = X.inverse() * found.T_odom_sensor;
     EXPECT_LT(error.translation_m.norm(), 1e-3) << k;
     EXPECT_LT(so3_log(error.rotation).norm(), 1e-4) << k;
   }
+}
+
+// However large the neighbourhood, a scan ends.
+TEST(Alignment, EndsWhenItHasSeenAsManyNeighboursAsItMay) {
+  constexpr double kEverything_m = 100.0;
+  const Corner corner({});
+  const auto points = static_cast<std::int64_t>(corner.surfaces.cloud().size());
+  const Pose guess{so3_exp({0.01, 0.02, -0.015}), {0.1, -0.08, 0.05}};
+  std::int64_t left = 20 * points;
+  const Alignment found = align(corner.edge_features, corner.surface_features, corner.edges,
+                                corner.surfaces, guess, kEverything_m, {}, left);
+  EXPECT_FALSE(found.converged);
+  EXPECT_EQ(found.iterations, 0);
+  EXPECT_LE(left, 0);
+  EXPECT_GT(left, -points) << "no more than the search under way";
+  EXPECT_EQ(found.T_odom_sensor.translation_m, guess.translation_m) << "no step of half the scan";
 }
 
 }  // namespace
