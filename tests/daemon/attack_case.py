@@ -69,11 +69,14 @@ class Case:
         expect(False, f"expected {expected}, found "
                       f"{ {name: found.get(name) for name in expected} }")
 
-    def journal(self, event, text="", seconds=5):
+    def journal(self, event, text="", after=None, seconds=5):
+        """`after`: later than the first entry of that event."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            self.lilod.journal.read()
-            if any(e["EVENT"] == event and text in e["MESSAGE"] for e in self.lilod.journal.entries):
+            events = self.lilod.journal.events()
+            first = events.index(after) if after in events else 0
+            told = [e for e in self.lilod.journal.entries if e["EVENT"]][first:]
+            if any(e["EVENT"] == event and text in e["MESSAGE"] for e in told):
                 return
             time.sleep(0.1)
         expect(False, f"no entry {event} with \"{text}\": "

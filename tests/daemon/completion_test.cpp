@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/daemon/on_a_terminal.hpp"
 #include "tests/daemon/operator.hpp"
 #include "tests/tools/temporary_folder.hpp"

@@ -4,6 +4,7 @@ import glob
 import json
 import math
 import os
+import random
 import re
 import shutil
 import signal
@@ -22,6 +23,12 @@ def binary(name):
     return os.path.join(os.environ.get("LILO_BIN_DIR", REPOSITORY + "/build/release/bin"), name)
 
 
+def preloaded(name):
+    """What lets a lilod load tests/daemon/NAME.cpp before the C library."""
+    folder = os.environ.get("LILO_TESTS_DIR", REPOSITORY + "/build/release/tests")
+    return {"LD_PRELOAD": f"{folder}/lib{name}.so"}
+
+
 def free_port():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))
@@ -36,18 +43,29 @@ def event_names():
 
 
 class Vlp16:
-    """A VLP-16 at 600 rpm, 1.8 m above the floor of a room of 24 x 14 m, at sensor speed, on a
-    thread of its own (63-9243, section 9)."""
+    """A VLP-16 at 600 rpm, 1.8 m above the floor of a scene, at sensor speed, on a thread of its own
+    (63-9243, section 9). Range noise is 1 cm, another in each of three revolutions."""
 
     PACKET_S = 24 * 55.296e-6
     ELEVATIONS = [-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15]
-    _blocks = None
+    SCENES = {  # distance of the wall at an azimuth (rad), m
+        "room": lambda a: min(12 / max(abs(math.cos(a)), 1e-9), 7 / max(abs(math.sin(a)), 1e-9)),
+        "corridor": lambda a: 2 / max(abs(math.sin(a)), 1e-9),
+        "field": lambda a: math.inf,  # the floor alone
+        "fog": lambda a: None,        # no return at all
+    }
+    NOISES = 3
+    _blocks = {}  # (scene, noise) -> blocks by tenth of a degree
 
     def __init__(self, port, address="127.0.0.1", source_port=0, to="127.0.0.1", product=0x22,
-                 hdl64e=False):
-        """With another product byte or the block flags of an HDL-64E it says it is another model."""
+                 hdl64e=False, scenes=("room",)):
+        """With another product byte or the block flags of an HDL-64E it says it is another model.
+        `scenes`: what it may have to show, the first at once."""
         self.port, self.product, self.to, self.hdl64e = port, product, to, hdl64e
         self.frozen_azimuth = self.frozen_stamp = False
+        for scene in scenes:
+            self._prepare(scene)
+        self.show(scenes[0])
         self.loss = 0.0
         self.sent = 0
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -72,28 +90,34 @@ class Vlp16:
         self._thread.join()
         self._socket.close()
 
+    def show(self, scene):
+        """What stands around it from now on."""
+        self.scene = scene
+
     @classmethod
-    def _room(cls):
-        """The 32 returns of a block for each tenth of a degree."""
-        if cls._blocks is None:
-            cls._blocks = []
-            for tenth in range(3600):
-                azimuth = math.radians(tenth / 10)
-                wall = min(12 / max(abs(math.cos(azimuth)), 1e-9),
-                           7 / max(abs(math.sin(azimuth)), 1e-9))
-                returns = b""
-                for elevation in cls.ELEVATIONS:
-                    e = math.radians(elevation)
-                    reach = wall / math.cos(e)
-                    if e < 0:
-                        reach = min(reach, 1.8 / math.sin(-e))
-                    returns += struct.pack("<HB", int(reach * 500), 60)
-                cls._blocks.append(returns * 2)
-        return cls._blocks
+    def _prepare(cls, scene):
+        wall, rng = cls.SCENES[scene], random.Random(1)
+        for noise in range(cls.NOISES):
+            if (scene, noise) not in cls._blocks:
+                cls._blocks[scene, noise] = [cls._block(wall(math.radians(tenth / 10)), rng)
+                                             for tenth in range(3600)]
+
+    @classmethod
+    def _block(cls, wall, rng):
+        """The 32 returns of a block."""
+        returns = b""
+        for elevation in cls.ELEVATIONS:
+            e = math.radians(elevation)
+            reach = 0.0 if wall is None else wall / math.cos(e)
+            if e < 0:
+                reach = min(reach, 1.8 / math.sin(-e))
+            steps = int((reach + rng.gauss(0.0, 0.01)) * 500) if 0.0 < reach <= 100.0 else 0
+            returns += struct.pack("<HB", steps, 60)
+        return returns * 2
 
     def packet(self, number):
         time_s = number * self.PACKET_S
-        blocks, out = self._room(), []
+        blocks, out = self._blocks[self.scene, int(time_s * 10) % self.NOISES], []
         for block in range(12):
             at = 0.0 if self.frozen_azimuth else time_s + block * 2 * 55.296e-6
             azimuth = int(at * 10 % 1 * 36000)
@@ -174,7 +198,8 @@ health:
   metrics_file: {folder}/lilo.prom
 """
 
-    def __init__(self, yaml=None, name="lilod", more="", model="auto", environment=None, **ports):
+    def __init__(self, yaml=None, name="lilod", more="", model="auto", environment=None, variables=None, **ports):
+        """`environment` as it is; of `variables`, {folder} is put in."""
         self.folder = tempfile.mkdtemp(prefix="lilo_world_")
         self.sink = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.sink.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20)
@@ -194,7 +219,8 @@ health:
         self._errors = open(self.folder + "/stderr", "w")
         self.process = subprocess.Popen(
             [binary("lilod"), "--config", self.config], stderr=self._errors,
-            env={**os.environ, "LILO_JOURNAL_SOCKET": self.journal.path, **(environment or {})})
+            env={**os.environ, "LILO_JOURNAL_SOCKET": self.journal.path, **(environment or {}),
+                 **{key: text.format(**fields) for key, text in (variables or {}).items()}})
 
     def listen(self):
         """Reads what it has sent; `health` is the last, `poses` all."""
@@ -216,6 +242,16 @@ health:
             if self.health is not None and good(self.health):
                 return True
             time.sleep(0.05)
+        return False
+
+    def wait_for_poses(self, good, count, seconds=15):
+        """Until so many more poses were good(); whether they came."""
+        known, end = len(self.poses), time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.listen()
+            if sum(good(message["pose"]) for message in self.poses[known:]) >= count:
+                return True
+            time.sleep(0.01)
         return False
 
     def metrics(self):
@@ -241,6 +277,11 @@ health:
         done = subprocess.run([binary("lilo"), "status", "--port", str(self.ports["request_port"])],
                               capture_output=True, text=True, timeout=10)
         return done.returncode, done.stdout
+
+    def cpu_s(self):
+        """Of all its threads."""
+        fields = open(f"/proc/{self.process.pid}/stat").read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def stderr(self):
         return open(self.folder + "/stderr").read()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What sensors do to a running lilod: they fall silent, stick, lie, are of another model."""
+"""What sensors do to a running lilod: they fall silent, stick, lie, are of another model, see too
+little."""
 import os
 import socket
 
@@ -132,6 +133,18 @@ def vlp16_fed_by_hdl32e():
 
 
 @attack
+def hdl64e_fed_by_vlp32c():
+    wrong_sensor("hdl64e", "packets of a VLP-32C (product byte 0x28) refused, configured is "
+                 "HDL-64E: set sensor.model", "VLP-32C", product=0x28)
+
+
+@attack
+def hdl64e_fed_by_hdl32e():
+    wrong_sensor("hdl64e", "packets of an HDL-32E (product byte 0x21) refused, configured is "
+                 "HDL-64E: set sensor.model", "HDL-32E", product=0x21)
+
+
+@attack
 def auto_fed_by_an_unknown_product():
     wrong_sensor("auto", "packets of an unknown sensor (product byte 0x77) refused: set "
                  "sensor.model", "unknown sensor", product=0x77)
@@ -185,3 +198,67 @@ def packets_lost():
         case.journal("faults", "packets lost")
         sensor.loss = 0.0
         case.health("tracking", without="packets lost", seconds=20)
+
+
+@attack
+def field_without_a_wall():
+    """Nothing tells how far along it is: degraded, and why; then well again."""
+    with Case() as case:
+        sensor = case.sensor(scenes=("room", "field"))
+        sensor.on()
+        case.health("tracking")
+        sensor.show("field")
+        case.health("degraded", "degraded")
+        case.journal("degraded", "the scan said")
+        sensor.show("room")
+        case.health("tracking", without="degraded")
+        case.journal("tracking", after="degraded", seconds=15)
+
+
+@attack
+def fog_for_a_moment():
+    """Lost, and found again in the same session."""
+    with Case() as case:
+        sensor = case.sensor(scenes=("room", "fog"))
+        sensor.on()
+        case.health("tracking")
+        session = case.lilod.health["session"]
+        sensor.show("fog")
+        lost = case.lilod.wait_for_poses(lambda pose: pose["status"] == "lost", 1)
+        sensor.show("room")
+        expect(lost, "without a return it is lost")
+        case.journal("lost", "poses are the prediction alone")
+        case.journal("relocalized", "place found again after")
+        case.health("tracking", without="lost")
+        expect(case.lilod.health["session"] == session, "the session goes on")
+
+
+@attack
+def carried_into_a_corridor():
+    """The map is given up for another one."""
+    with Case() as case:
+        sensor = case.sensor(scenes=("room", "corridor"))
+        sensor.on()
+        case.health("tracking")
+        before = case.lilod.health["session"]
+        sensor.show("corridor")
+        expect(case.lilod.wait(lambda h: h["session"] != before), "another session")
+        case.journal("lost")
+        case.journal("session_replaced", f"in place of {before}, whose map was given up as lost")
+        case.health(without="lost")
+
+
+@attack
+def more_surface_than_the_map_holds():
+    """Cells of 10 cm: the floor alone has more than 10 000."""
+    with Case(more="odometry:\n  max_range_m: 20\n  default:\n    cell_m: 0.1\n    map_radius_m: 20\n"
+                   "    map_cells: 10000\n") as case:
+        sensor = case.sensor()
+        sensor.on()
+        case.health(complaint="map full")
+        case.journal("faults", "map full")
+        sensor.off()
+        case.health("silent", without="map full", seconds=16)
+        refused = case.lilod.health["map_refused"]
+        case.metrics({'lilo_map_refused_total{instance="lilod"}': refused})
+        expect(refused > 0, "the count stays")
