@@ -2,6 +2,7 @@
 #include "config/config.hpp"
 #include "config/key.hpp"
 #include "config/yaml_reader.hpp"
+#include "core/constants.hpp"
 #include "core/map/local_maps.hpp"
 
 #include <fmt/format.h>
@@ -57,8 +58,8 @@ void check_map(const Config& c, std::vector<Contradiction>& found) {
     return (within_m + std::max(within_m, range_m)) / core::CellTable::kSafeLevels;
   };
   // Half cells are kept nearby only, but reach as far as returns do.
-  const double least_cell_m = std::max(
-      least_m(radius_m), 2.0 * least_m(std::min(radius_m, core::LocalMaps::kNarrowRadius_m)));
+  const double least_cell_m =
+      std::max(least_m(radius_m), 2.0 * least_m(std::min(radius_m, core::map::kHalfCellRadius_m)));
   if (cell_m >= least_cell_m) return;
   found.push_back(
       {{"odometry.default.cell_m", "odometry.default.map_radius_m", "odometry.max_range_m",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/pose.hpp"
 
+#include "core/constants.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -47,7 +49,7 @@ Pose Pose::inverse() const {
 }
 
 double magnitude_m(const Eigen::Vector3d& turned_rad, const Eigen::Vector3d& moved_m) {
-  return std::max(moved_m.norm(), kLever_m * turned_rad.norm());
+  return std::max(moved_m.norm(), core::motion::kLever_m * turned_rad.norm());
 }
 
 double magnitude_m(const Pose& T) { return magnitude_m(so3_log(T.rotation), T.translation_m); }

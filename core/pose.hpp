@@ -32,11 +32,8 @@ struct Pose {
   [[nodiscard]] Pose inverse() const;
 };
 
-/// Where rotations and translations share a threshold, a rotation counts as the way of what is seen
-/// so far away.
-inline constexpr double kLever_m = 10.0;
-/// Magnitude of a motion: the larger of its translation and of what its rotation moves at the
-/// lever.
+/// Magnitude of a motion: the larger of its translation and of the way by which its rotation moves
+/// what is seen motion::kLever_m away.
 [[nodiscard]] double magnitude_m(const Eigen::Vector3d& turned_rad, const Eigen::Vector3d& moved_m);
 [[nodiscard]] double magnitude_m(const Pose& T);
 

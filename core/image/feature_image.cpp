@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/image/feature_image.hpp"
 
+#include "core/constants.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,21 +11,6 @@
 
 namespace lilo::core {
 namespace {
-
-// Ground seen from a tilted sensor or on a hill stays below this slope, walls and trunks above.
-constexpr float kSteep = 0.84F;  // tan 40 degrees
-// The slope of a ceiling stays below this, however a hand tilts the sensor: tan 17 degrees.
-constexpr float kLevel = 0.3F;
-// Two returns belong to one surface when they are not much farther apart than the rings would be
-// on a surface of that slope.
-constexpr float kSameSurface = 3.0F;
-// Rings that meet the ground farther apart say little of how it runs between: believed to be
-// straight from one to the other it bent the map of every fast drive. From 8 to 15 m the errors
-// hardly change.
-constexpr float kFarApart_m = 10.0F;
-// The lasers of one firing look up to 18 degrees apart (HDL-64E). Columns nearer to the front, and
-// those around the scan's first return, where it ends as well, may still get returns.
-constexpr float kSpread_rad = 0.35F;
 
 constexpr float kNone_m2 = std::numeric_limits<float>::max();
 
@@ -41,7 +28,7 @@ FeatureImage::FeatureImage(int columns, RangeLimits limits)
       farthest2_(static_cast<float>(limits.max_m * limits.max_m)) {}
 
 int FeatureImage::columns_for(int rings, int most) {
-  return std::min(most, kMostPixels / std::max(rings, 1));
+  return std::min(most, image::kMostPixels / std::max(rings, 1));
 }
 
 float FeatureImage::columns_per_rad(int columns) {
@@ -57,7 +44,7 @@ const std::vector<Feature>& FeatureImage::build(const Scan& scan) {
 void FeatureImage::begin(const BeamTable& beams) {
   beams_ = beams;
   columns_ = columns_for(beams.ring_count, most_columns_);
-  margin_ = static_cast<int>(std::ceil(kSpread_rad * columns_per_rad(columns_)));
+  margin_ = static_cast<int>(std::ceil(image::kFiringSpread_rad * columns_per_rad(columns_)));
   const auto size = static_cast<std::size_t>(beams.ring_count) * static_cast<std::size_t>(columns_);
   pixels_.resize(size);
   edges_ = {};
@@ -160,12 +147,12 @@ void FeatureImage::find_edges(const ColumnView& g) {
   for (std::size_t k = 0; k < count; ++k) {
     const float from_m = g.horizontal_m[k], to_m = g.horizontal_m[k + 1];
     const float dd = to_m - from_m, dz = g.z_m[k + 1] - g.z_m[k];
-    const bool is_steep = std::abs(dz) > kSteep * std::abs(dd);
+    const bool is_steep = std::abs(dz) > image::kSteepSlope * std::abs(dd);
     // Rings are range * gap apart across the ray, and farther on what the ray grazes: by the ratio
     // of flat to z, but not beyond the range.
     const float across_m = from_m * gap_rad_[k];
     const float grazing_m = is_steep ? from_m : std::max(std::abs(g.z_m[k]), across_m);
-    const float reach_m2 = kSameSurface * across_m * from_m;
+    const float reach_m2 = image::kSameSurface * across_m * from_m;
     const float length2 = dd * dd + dz * dz;
     const bool one_surface =
         (from_m > 0.0F) & (to_m > 0.0F) & (length2 * grazing_m * grazing_m < reach_m2 * reach_m2);
@@ -173,7 +160,7 @@ void FeatureImage::find_edges(const ColumnView& g) {
     flat[k] = static_cast<std::int32_t>(one_surface & !is_steep);
     steep[k] = static_cast<std::int32_t>(one_surface & is_steep);
     // From below, the higher one of two rings meets a level surface nearer to the sensor.
-    const bool is_level = (dd < 0.0F) & (std::abs(dz) < kLevel * -dd);
+    const bool is_level = (dd < 0.0F) & (std::abs(dz) < image::kLevelSlope * -dd);
     level[k] = static_cast<std::int32_t>(one_surface & is_level & (g.z_m[k] > 0.0F));
   }
 }
@@ -218,7 +205,7 @@ void FeatureImage::set_sample_gap(const ColumnView& g, float to_lower2, float to
                                   Feature& f) const {
   const std::size_t ring = f.ring;
   const bool up = to_upper2 < to_lower2;
-  if ((up ? to_upper2 : to_lower2) < kFarApart_m * kFarApart_m) {
+  if ((up ? to_upper2 : to_lower2) < image::kMostRingGap_m * image::kMostRingGap_m) {
     const std::size_t neighbour = up ? ring + 1 : ring - 1;
     f.dx_m = g.x_m[neighbour] - f.x_m;
     f.dy_m = g.y_m[neighbour] - f.y_m;

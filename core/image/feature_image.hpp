@@ -31,12 +31,9 @@ struct RangeLimits {
 /// the scan was divided.
 class FeatureImage {
  public:
-  /// Of an image, and so of features. With 64 rings, 512 to 1024 columns give the same errors.
-  /// Fewer are worse, more cost time.
-  static constexpr int kMostPixels = 64 * 576;
-
   FeatureImage(int columns, RangeLimits limits);
-  /// The width of the image for so many rings: `most`, or less where it would get too many pixels.
+  /// The width of the image for so many rings: `most`, or less where it would get more than
+  /// image::kMostPixels.
   static int columns_for(int rings, int most);
 
   void begin(const BeamTable& beams);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/image/selection.hpp"
 
+#include "core/constants.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -14,7 +16,7 @@ Selection::Selection(int ground_goal, int structure_goal)
       taken_(std::bit_ceil(static_cast<std::size_t>(ground_goal + structure_goal) * 4)),
       mask_(taken_.size() - 1) {
   chosen_.reserve(taken_.size() / 2);
-  voxels_.reserve(FeatureImage::kMostPixels);
+  voxels_.reserve(image::kMostPixels);
 }
 
 std::size_t Selection::golden_stride(std::size_t size) {
@@ -45,8 +47,7 @@ bool Selection::take(std::uint64_t voxel) {
 const std::vector<Feature>& Selection::choose(const std::vector<Feature>& all, bool with_overhead) {
   // Too small a voxel fills the goal before the turn is over, as after a scan that saw little. Too
   // large a one leaves little of what there is, as in the first scan of a narrow place.
-  constexpr int kMostPasses = 8;
-  for (int pass = 0; pass < kMostPasses && !take_evenly(all, with_overhead); ++pass) {
+  for (int pass = 0; pass < image::kVoxelPasses && !take_evenly(all, with_overhead); ++pass) {
   }
   return chosen_;
 }
@@ -84,10 +85,10 @@ bool Selection::take_evenly(const std::vector<Feature>& all, bool with_overhead)
     if (voxels_[k] == kPicked) chosen_.push_back(all[k]);
   }
   for (std::size_t k = 0; k < kKinds; ++k) {
-    // On surfaces the number goes with the inverse square of the voxel; 0.35 instead of 0.5 damps.
     const float ratio = static_cast<float>(std::max(count[k], 1)) / static_cast<float>(goal_[k]);
     const float before_m = voxel_m_[k];
-    voxel_m_[k] = std::clamp(voxel_m_[k] * std::pow(ratio, 0.35F), 0.05F, 5.0F);
+    voxel_m_[k] = std::clamp(voxel_m_[k] * std::pow(ratio, image::kVoxelPower),
+                             image::kLeastVoxel_m, image::kMostVoxel_m);
     const bool few = 2 * count[k] < std::min(goal_[k], offered[k]);
     if (few && voxel_m_[k] < before_m) done = false;
   }

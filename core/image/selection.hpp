@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/image/feature_image.hpp"
 
 #include <array>
@@ -44,7 +45,7 @@ class Selection {
   bool take(std::uint64_t voxel);
 
   std::array<int, kKinds> goal_;
-  std::array<float, kKinds> voxel_m_{1.0F, 0.5F};
+  std::array<float, kKinds> voxel_m_ = image::kFirstVoxel_m;
   std::vector<std::uint64_t> taken_;  // hash set of voxels, 0: empty
   std::size_t mask_;
   std::vector<std::uint64_t> voxels_;  // of each feature

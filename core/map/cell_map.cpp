@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/map/cell_map.hpp"
 
+#include "core/constants.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -8,19 +10,6 @@
 #include <cmath>
 
 namespace lilo::core {
-namespace {
-
-constexpr float kMinCount = 6.0F;  // points a window needs
-// 1 sigma of what one point says of the surface around it. The points of a young cell come from few
-// scans, and share their errors.
-constexpr float kPoint_m = 0.05F, kYoungPoint_m = 0.1F;
-constexpr std::uint32_t kYoungCell = 5;  // keyframes
-// A direction informs if its spread (1 sigma) stays under this part of the window's width; an even
-// filling has 0.29.
-constexpr float kThin = 0.065F;
-constexpr std::size_t kSweepShare = 64;
-
-}  // namespace
 
 CellMap::CellMap(const CellMapConfig& config)
     : config_(config),
@@ -120,17 +109,16 @@ void CellMap::fit(Cell& cell) const {
   cell.information.setZero();
   const Moments sums = moments_around(cell.index);
   const float count = count_of(sums);
-  if (count < kMinCount) return;
+  if (count < map::kMinPoints) return;
   cell.mean_m = points_of(sums) / count;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(matrix_of<float>(squares_of(sums) / count - outer(cell.mean_m)));
-  const float thin_m = kThin * 3.0F * config_.cell_m;
-  const float point_m = age < kYoungCell ? kYoungPoint_m : kPoint_m;
+  const float thin_m = map::kThinSpread * 3.0F * config_.cell_m;
+  const float point_m = age < map::kYoungCell ? map::kYoungPoint_m : map::kPoint_m;
   const float doubt = config_.noise_m * config_.noise_m + point_m * point_m / count;
   // Thin in two directions, a strip of ground may lean any way about its length.
-  constexpr float kUpright = 0.7F;  // cosine
   if (config_.level && (solver.eigenvalues()[1] < thin_m * thin_m ||
-                        std::abs(solver.eigenvectors()(2, 0)) < kUpright)) {
+                        std::abs(solver.eigenvectors()(2, 0)) < map::kUprightCosine)) {
     return;
   }
   for (int k = 0; k < 3; ++k) {
@@ -160,7 +148,7 @@ void CellMap::remove(std::size_t slot) {
 
 void CellMap::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
   const std::vector<CellTable::Slot>& slots = table_.slots();
-  const std::size_t share = slots.size() / kSweepShare;
+  const std::size_t share = slots.size() / map::kSweepScans;
   const CellIndex center = index_of(center_m);
   const std::uint32_t center_tag = CellTable::tag_of(center);
   const Eigen::Vector3d rest_m = center_of(center) - center_m;

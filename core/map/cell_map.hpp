@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/map/cell_table.hpp"
 #include "core/map/moments.hpp"
 #include "core/odometry_config.hpp"
@@ -30,9 +31,7 @@ struct CellMapConfig {
   bool level = false;
   /// Cells; beyond it new ones are refused and counted.
   int capacity = DefaultConfig{}.map_cells;
-  /// Points a cell remembers; older ones fade. What is seen of a thing moves as the sensor passes
-  /// it: held against its oldest views, a scan is dragged back, and every path comes out too short.
-  float memory = 30.0F;
+  float memory = map::kMemory;
 };
 
 /// A cell's distribution is the Gaussian of the points in the 3x3x3 cells around it. It informs

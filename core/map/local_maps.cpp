@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/map/local_maps.hpp"
 
+#include "core/constants.hpp"
+
 #include <algorithm>
 
 namespace lilo::core {
@@ -53,7 +55,8 @@ void LocalMaps::end_keyframe() {
 
 void LocalMaps::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
   for (std::size_t level = 0; level < kLevels; ++level) {
-    const double within_m = level == kNarrow ? std::min(radius_m, kNarrowRadius_m) : radius_m;
+    const double within_m =
+        level == kNarrow ? std::min(radius_m, map::kHalfCellRadius_m) : radius_m;
     for (CellMap& map : levels_[level]) map.forget_beyond(center_m, within_m);
   }
 }

@@ -25,8 +25,6 @@ class LocalMaps {
   /// into one another.
   static constexpr std::size_t kLevels = 3;
   static constexpr std::size_t kNarrow = 0, kUsual = 1, kCoarse = 2;
-  /// Half cells farther away are forgotten: rooms hide what is there.
-  static constexpr double kNarrowRadius_m = 20.0;
   using PerLevel = std::array<std::int32_t, kLevels>;
   static constexpr PerLevel kNoCells{CellMap::kNone, CellMap::kNone, CellMap::kNone};
 
@@ -50,7 +48,8 @@ class LocalMaps {
   void insert(std::span<const Point> points, std::size_t finest);
 
   void end_keyframe();
-  /// Forgets cells farther than `radius_m` from `center_m`, half cells much nearer.
+  /// Forgets cells farther than `radius_m` from `center_m`, half cells farther than
+  /// map::kHalfCellRadius_m.
   void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
   void clear();
   [[nodiscard]] int size() const;               ///< cells

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/motion/motion_prior.hpp"
 
+#include "core/constants.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -94,18 +96,17 @@ Matrix6d motion_information(const Prior& prior) {
 }
 
 int segments_for(const Vector6d& acceleration_density, double span_s, int least) {
-  constexpr double kBetweenKnots_rad = 1e-3;  // 2 cm at 20 m
   const double density = acceleration_density.head<3>().mean();
-  const double segment_s = std::cbrt(192.0 * kBetweenKnots_rad * kBetweenKnots_rad / density);
+  const double segment_s =
+      std::cbrt(192.0 * motion::kKnotMotion_rad * motion::kKnotMotion_rad / density);
   const double wanted = std::ceil(span_s / segment_s);
-  return static_cast<int>(
-      std::clamp(wanted, std::min<double>(least, kMaxSegments), double{kMaxSegments}));
+  return static_cast<int>(std::clamp(wanted, std::min<double>(least, motion::kMaxSegments),
+                                     double{motion::kMaxSegments}));
 }
 
 KnotInformation propagated(const KnotInformation& information, const Vector6d& acceleration_density,
                            double dt_s) {
-  constexpr double kNoTime_s = 1e-5;  // from one firing to the next
-  if (dt_s < kNoTime_s) return information;
+  if (dt_s < motion::kLeastGap_s) return information;
   const KnotInformation phi = transition(dt_s);
   const KnotInformation Q = process_information(acceleration_density, dt_s).inverse();
   return (phi * information.inverse() * phi.transpose() + Q).inverse();

@@ -22,7 +22,7 @@ struct Prior {
   Pose T_begin;
   Twist twist;
   double span_s = 0.1;
-  int segments = 1;                ///< of the trajectory, up to kMaxSegments
+  int segments = 1;                ///< of the trajectory, up to motion::kMaxSegments
   Knot begin_mean = Knot::Zero();  ///< of the first knot
   KnotInformation begin_information = KnotInformation::Identity();
   /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
@@ -58,7 +58,8 @@ Matrix6d motion_information(const Prior& prior);
 
 /// How many segments of a span leave a motion of such a process noise no more than 1 mrad, 1 sigma,
 /// between its knots: between two that are known, white noise of density q on acceleration leaves a
-/// variance of q dt^3 / 192 in the middle. At least `least`, at most kMaxSegments.
+/// variance of q dt^3 / 192 in the middle. At least `least`, at most
+/// motion::kMaxSegments.
 int segments_for(const Vector6d& acceleration_density, double span_s, int least);
 
 /// The information of a knot left after `dt_s` without data.

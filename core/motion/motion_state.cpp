@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/motion/motion_state.hpp"
 
+#include "core/constants.hpp"
+
 #include <algorithm>
 
 namespace lilo::core {
 
 KnotInformation initial_information() {
-  constexpr double kPose = 1e-4;  // m, rad
-  constexpr double kSpeed_mps = 20.0, kClimb_mps = 0.5, kYaw_radps = 0.5, kTilt_radps = 0.1;
   Knot sigma;
-  sigma << Vector6d::Constant(kPose), kTilt_radps, kTilt_radps, kYaw_radps, kSpeed_mps, kSpeed_mps,
-      kClimb_mps;
+  sigma << Vector6d::Constant(motion::kInitialPose), motion::kInitialTilt_radps,
+      motion::kInitialTilt_radps, motion::kInitialYaw_radps, motion::kInitialSpeed_mps,
+      motion::kInitialSpeed_mps, motion::kInitialClimb_mps;
   return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
 }
 
@@ -20,10 +21,11 @@ Prior predict(const MotionState& state, const ScanTiming& scan, const Vector6d& 
   const double since_s = state.end_ns ? seconds_between(*state.end_ns, scan.end_ns) : duration_s;
   Prior prior;
   // Returns that were compensated all belong to the end: the trajectory reaches back to the last.
-  const bool reaches_back = scan.motion_compensated && since_s > 0.0 && since_s <= kLongestGap_s;
+  const bool reaches_back =
+      scan.motion_compensated && since_s > 0.0 && since_s <= motion::kLongestGap_s;
   prior.span_s = reaches_back ? since_s : duration_s;
   const double unseen_s = since_s - prior.span_s;
-  const double gap_s = unseen_s > kLongestGap_s ? 0.0 : std::max(0.0, unseen_s);
+  const double gap_s = unseen_s > motion::kLongestGap_s ? 0.0 : std::max(0.0, unseen_s);
   prior.T_begin = moved(state.T_odom_sensor, state.twist, gap_s);
   prior.twist = state.twist;
   prior.acceleration_density = density;

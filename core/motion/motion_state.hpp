@@ -9,13 +9,6 @@
 
 namespace lilo::core {
 
-/// Over such a gap a prediction is good to half a cell: an alignment that begins there finds the
-/// sensor.
-inline constexpr double kShortGap_s = 0.35;
-/// A prediction is made over gaps up to this. After a longer one the sensor is predicted where it
-/// was: either the clock was set, or it may be anywhere.
-inline constexpr double kLongestGap_s = 2.5;
-
 /// What is known before the first scan: the pose is the origin by definition; of the motion, that
 /// vehicles go fast along the ground and turn about the vertical, and do little else.
 KnotInformation initial_information();

@@ -1,25 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/motion/process_noise.hpp"
 
-#include "core/motion/motion_state.hpp"
+#include "core/constants.hpp"
 
 namespace lilo::core {
-namespace {
-
-constexpr double kNewest = 0.1;  // weight of a scan in the running mean: about a second
-// What shakes faster than the scans come cancels in part between the middles of two. From 4 to 16
-// the errors hardly change.
-constexpr double kBetweenScans = 8.0;
-constexpr double kShortest_s = 0.01;  // from scan to scan
-
-}  // namespace
 
 void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns, const Vector6d& variance) {
   const double interval_s = 1e-9 * static_cast<double>(stamp_ns - stamp_ns_);
   const Pose from = T_middle_;
   T_middle_ = T_middle;
   stamp_ns_ = stamp_ns;
-  if (observed_ == 0 || interval_s < kShortest_s || interval_s > kShortGap_s) {
+  if (observed_ == 0 || interval_s < motion::kLeastInterval_s || interval_s > motion::kShortGap_s) {
     observed_ = 1;
     return;
   }
@@ -35,7 +26,7 @@ void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns, const Ve
     const Vector6d shared = mean_by_kind(density);
     // Information that is nearly singular may come out with a negative variance.
     if (shared.allFinite() && variance.minCoeff() >= 0.0) {
-      density_ += kNewest * (kBetweenScans * shared - density_);
+      density_ += motion::kNoiseSmoothing * (motion::kFasterThanScans * shared - density_);
       density_ = density_.cwiseMax(nominal_);
     }
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
+
 #include <cstdint>
 
 namespace lilo::core {
@@ -12,14 +14,12 @@ struct ScanTiming {
 
   /// First to last firing; that of 600 revolutions a minute where the stamps tell none.
   [[nodiscard]] double span_s() const {
-    constexpr double kUsual_s = 0.1;
     const double span_s = 1e-9 * static_cast<double>(end_ns - start_ns);
-    return span_s > 0.0 ? span_s : kUsual_s;
+    return span_s > 0.0 ? span_s : motion::kNominalSpan_s;
   }
   /// Whether no firing is missing between a scan that ended at `previous_end_ns` and this one.
   [[nodiscard]] bool follows(std::int64_t previous_end_ns) const {
-    constexpr std::int64_t kNextFiring_ns = 1'000'000;
-    return start_ns - previous_end_ns < kNextFiring_ns;
+    return start_ns - previous_end_ns < motion::kNextFiring_ns;
   }
 };
 

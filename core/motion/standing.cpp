@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/motion/standing.hpp"
 
+#include "core/constants.hpp"
+
 namespace lilo::core {
-namespace {
-
-constexpr double kStill_mps = 0.1, kStill_radps = 0.1;
-constexpr int kStillScans = 5;       // on end: it stands
-constexpr double kAway_m = 0.1;      // it has set off
-constexpr double kPlace_m = 0.005;   // 1 sigma
-constexpr double kSetOff_mps = 0.3;  // 1 sigma: it may set off at any time
-
-}  // namespace
 
 void Standing::begin(const Pose& T_odom_sensor) {
   T_odom_sensor_ = T_odom_sensor;
@@ -24,13 +17,14 @@ void Standing::end() {
 
 void Standing::observe(const Pose& T_odom_sensor, const Twist& twist) {
   if (stands_) {
-    if ((T_odom_sensor.translation_m - T_odom_sensor_.translation_m).norm() > kAway_m) end();
+    if ((T_odom_sensor.translation_m - T_odom_sensor_.translation_m).norm() > motion::kSetOff_m)
+      end();
     return;
   }
-  const bool still =
-      twist.linear_mps.norm() < kStill_mps && twist.angular_radps.norm() < kStill_radps;
+  const bool still = twist.linear_mps.norm() < motion::kStationary_mps &&
+                     twist.angular_radps.norm() < motion::kStationary_radps;
   still_scans_ = still ? still_scans_ + 1 : 0;
-  if (still_scans_ >= kStillScans) begin(T_odom_sensor);
+  if (still_scans_ >= motion::kStationaryScans) begin(T_odom_sensor);
 }
 
 Prior Standing::hypothesis(Prior prior) const {
@@ -45,8 +39,8 @@ Prior Standing::hypothesis(Prior prior) const {
       prior.begin_information(k, k) = 1.0 / (sigma * sigma);
     }
   };
-  believe(kTranslation, kPlace_m);
-  believe(kVelocity, kSetOff_mps);
+  believe(kTranslation, motion::kStationaryPlace_m);
+  believe(kVelocity, motion::kStationaryVelocity_mps);
   return prior;
 }
 

@@ -45,12 +45,13 @@ Twist twist_between(const Pose& a, const Pose& b, double dt_s) {
 }
 
 void sample(const Trajectory& trajectory, Sampled& sampled) {
-  for (std::size_t k = 0; k <= kInstants; ++k) {
-    const Pose T = trajectory.at(static_cast<double>(k) / kInstants);
+  for (std::size_t k = 0; k <= motion::kTrajectoryInstants; ++k) {
+    const Pose T = trajectory.at(static_cast<double>(k) / motion::kTrajectoryInstants);
     sampled.rotation[k] = T.rotation.toRotationMatrix().cast<float>();
     sampled.translation_m[k] = T.translation_m;
     if (k > 0) {
-      sampled.velocity[k] = (T.translation_m - sampled.translation_m[k - 1]) * kInstants;
+      sampled.velocity[k] =
+          (T.translation_m - sampled.translation_m[k - 1]) * motion::kTrajectoryInstants;
     }
   }
   sampled.velocity[0] = sampled.velocity[1];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/estimate.hpp"
 #include "core/pose.hpp"
 
@@ -17,9 +18,8 @@
 /// velocity are continuous inside a scan and from scan to scan.
 namespace lilo::core {
 
-inline constexpr int kMaxSegments = 4;
 inline constexpr int kKnotSize = 12;  ///< d (rotation, translation), then its rate per second
-inline constexpr int kMaxUnknowns = kKnotSize * (kMaxSegments + 1);
+inline constexpr int kMaxUnknowns = kKnotSize * (motion::kMaxSegments + 1);
 using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxUnknowns, 1>;
 using Knot = Eigen::Matrix<double, kKnotSize, 1>;
 using KnotInformation = Eigen::Matrix<double, kKnotSize, kKnotSize>;
@@ -54,11 +54,12 @@ Twist twist_between(const Pose& a, const Pose& b, double dt_s);
 
 /// The trajectory at evenly spaced instants, laid out for the point loop. Rotation is taken from
 /// the nearest instant (within 0.4 ms of a 100 ms scan), translation changes linearly around it.
-inline constexpr int kInstants = 128;
 struct Sampled {
-  std::array<Eigen::Matrix3f, kInstants + 1> rotation;
-  std::array<Eigen::Vector3d, kInstants + 1> translation_m;
-  std::array<Eigen::Vector3d, kInstants + 1> velocity;  ///< change of translation per unit of s
+  template <typename T>
+  using AtInstants = std::array<T, motion::kTrajectoryInstants + 1>;
+  AtInstants<Eigen::Matrix3f> rotation;
+  AtInstants<Eigen::Vector3d> translation_m;
+  AtInstants<Eigen::Vector3d> velocity;  ///< change of translation per unit of s
 
   /// A point of the sensor's frame at the part `s` of the scan, turned into the odometry's axes,
   /// and where its origin is.
@@ -68,10 +69,11 @@ struct Sampled {
   [[nodiscard]] Eigen::Vector3d origin_m(float s) const {
     const std::size_t k = instant_of(s);
     return translation_m[k] +
-           (static_cast<double>(s) - static_cast<double>(k) / kInstants) * velocity[k];
+           (static_cast<double>(s) - static_cast<double>(k) / motion::kTrajectoryInstants) *
+               velocity[k];
   }
   static std::size_t instant_of(float s) {
-    const float and_half = s * kInstants + 0.5F;  // lround() is a call
+    const float and_half = s * motion::kTrajectoryInstants + 0.5F;  // lround() is a call
     return static_cast<std::size_t>(and_half);
   }
 };

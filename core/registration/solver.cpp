@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/registration/solver.hpp"
 
+#include "core/constants.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
@@ -11,11 +13,6 @@
 
 namespace lilo::core {
 namespace {
-
-// Far from the solution residuals are larger than noise and what moves: a wide kernel first, then
-// the tight one (graduated non-convexity; Yang et al., RA-L 2020). And every fourth feature shows
-// the way as well as all of them.
-constexpr std::size_t kCoarse = 4;
 
 /// Information of the last knot when the others are not asked: the Schur complement.
 KnotInformation marginal_of_last(const NormalMatrix& H) {
@@ -35,6 +32,11 @@ std::pair<Matrix6d, Vector6d> normal_equations(const ResidualSums& sums) {
   H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
   H.bottomRightCorner<3, 3>() = matrix_of<double>(sums.segment<6>(15));
   return {H, sums.tail<6>()};
+}
+
+KnotWeights weights_of_bin(int bin, const Prior& prior) {
+  const double s = static_cast<double>(bin) / registration::kResidualInstants;
+  return weights_at(s, prior.segments, prior.span_s);
 }
 
 }  // namespace
@@ -127,7 +129,8 @@ void Solver::add_residual(const Correspondence& one, float kernel_scale, float d
       C(1, 0), C(1, 1), C(1, 2), C(2, 0), C(2, 1), C(2, 2), i[0],    i[1],    i[2],
       i[3],    i[4],    i[5],    -pOr[0], -pOr[1], -pOr[2], -Or[0],  -Or[1],  -Or[2]};
   const float w = robust * data_weight;
-  const float and_half = one.feature->s * kBins + 0.5F;  // the nearest, without a call
+  // The nearest, without a call.
+  const float and_half = one.feature->s * registration::kResidualInstants + 0.5F;
   double* sum = bins_[static_cast<std::size_t>(and_half)].data();
   for (std::size_t k = 0; k < terms.size(); ++k) sum[k] += static_cast<double>(w * terms[k]);
 }
@@ -137,11 +140,10 @@ Solver::Equations Solver::data_equations(const Prior& prior, Matrix6d& data_info
   const int n = kKnotSize * (prior.segments + 1);
   Equations all{NormalMatrix::Zero(n, n), Unknowns::Zero(n)};
   data_information.setZero();
-  for (int bin = 0; bin <= kBins; ++bin) {
+  for (int bin = 0; bin <= registration::kResidualInstants; ++bin) {
     const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
     data_information += A / static_cast<double>(config_.data_weight);
-    const KnotWeights w =
-        weights_at(static_cast<double>(bin) / kBins, prior.segments, prior.span_s);
+    const KnotWeights w = weights_of_bin(bin, prior);
     for (int i = 0; i < 4; ++i) {
       const int row = kKnotSize * w.first + 6 * i;
       const double wi = w.weight[static_cast<std::size_t>(i)];
@@ -161,10 +163,9 @@ Solver::Equations Solver::data_equations(const Prior& prior, Matrix6d& data_info
 /// (Liang and Zeger, 1986). `step`: the last one, which the residuals have not seen yet.
 Vector6d Solver::design_effect(const Unknowns& step, const Prior& prior) const {
   Vector6d squares = Vector6d::Zero(), expected = Vector6d::Zero();
-  for (int bin = 0; bin <= kBins; ++bin) {
+  for (int bin = 0; bin <= registration::kResidualInstants; ++bin) {
     const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
-    const KnotWeights w =
-        weights_at(static_cast<double>(bin) / kBins, prior.segments, prior.span_s);
+    const KnotWeights w = weights_of_bin(bin, prior);
     Vector6d moved = Vector6d::Zero();
     for (int i = 0; i < 4; ++i) {
       moved += w.weight[static_cast<std::size_t>(i)] * step.segment<6>(kKnotSize * w.first + 6 * i);
@@ -184,10 +185,10 @@ Solution Solver::unaligned(const Prior& prior) const {
 
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
                        std::size_t finest) {
-  constexpr double kNear_m = 0.03, kEnough_m = 3e-3;
-  // Weights and cells follow each step, so that the next would be about a sixth of it.
-  constexpr double kFurther = 1.2;
-  std::size_t stride = kCoarse;
+  // Far from the solution residuals are larger than noise and what moves: a wide kernel first, then
+  // the tight one (graduated non-convexity; Yang et al., RA-L 2020). And a part of the features
+  // shows the way as well as all of them.
+  std::size_t stride = registration::kFarStride;
   double last_step_m = std::numeric_limits<double>::infinity();
   Solution solution = unaligned(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
@@ -200,13 +201,13 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     add_prior(prior, x, H, b);
     const Unknowns step = H.ldlt().solve(b);
     if (!step.allFinite()) break;
-    solution.trajectory.knots += (stride == 1 ? kFurther : 1.0) * step;
+    solution.trajectory.knots += (stride == 1 ? registration::kOverRelaxation : 1.0) * step;
     ++solution.iterations;
     const Vector6d end = step.segment<6>(n - kKnotSize);
     const double step_m = magnitude_m(end.head<3>(), end.tail<3>());
-    solution.converged = stride == 1 && step_m < kEnough_m;
+    solution.converged = stride == 1 && step_m < registration::kConvergedStep_m;
     // A part of the features may lead the solution round in a circle: its steps grow no shorter.
-    if (step_m < kNear_m || step_m >= last_step_m) stride = 1;
+    if (step_m < registration::kNearStep_m || step_m >= last_step_m) stride = 1;
     last_step_m = step_m;
     // The last step is always taken with all features.
     if (solution.iterations + 1 >= config_.max_iterations) stride = 1;

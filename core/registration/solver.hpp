@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/image/feature_image.hpp"
 #include "core/map/local_maps.hpp"
 #include "core/motion/motion_prior.hpp"
@@ -61,7 +62,6 @@ class Solver {
                  std::size_t finest = LocalMaps::kUsual);
 
  private:
-  static constexpr int kBins = 32;  // a scan's residuals share one of so many instants
   static constexpr std::size_t kAtATime = 32;
   /// A feature under the trajectory, and what it matches.
   struct Correspondence {
@@ -91,7 +91,7 @@ class Solver {
 
   SolverConfig config_;
   Sampled sampled_;
-  std::array<ResidualSums, kBins + 1> bins_;
+  std::array<ResidualSums, registration::kResidualInstants + 1> bins_;
   std::array<Correspondence, kAtATime> correspondences_;
   std::vector<LocalMaps::PerLevel> cached_cells_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/registration/solver.hpp"
 
 #include <cmath>
@@ -15,30 +16,25 @@ class StructureFit {
   /// The part that fits, over the usual part. 1 where the difference may be chance, and while the
   /// usual part is unknown. `structure`: features that are structure.
   [[nodiscard]] double relative(const Solution& solution, double structure) const {
-    constexpr double kBeyondChance = 3.0;  // sigmas
     const double usual = usual_ * structure, found = solution.structure_inliers;
-    return usual - found > kBeyondChance * std::sqrt(usual) ? found / usual : 1.0;
+    return usual - found > registration::kPoorFitSigmas * std::sqrt(usual) ? found / usual : 1.0;
   }
   /// A scan whose alignment is believed.
   void learn(const Solution& solution, double structure) {
-    constexpr double kNewest = 0.3;  // weight of a scan in the running mean: a few scans
     if (structure < 1.0) return;
     const double fit = solution.structure_inliers / structure;
-    usual_ += (usual_ > 0.0 ? kNewest : 1.0) * (fit - usual_);
+    usual_ += (usual_ > 0.0 ? registration::kFitSmoothing : 1.0) * (fit - usual_);
   }
 
  private:
   double usual_ = 0.0;  // 0: not known
 };
 
-/// Bounds of StructureFit::relative().
-inline constexpr double kDoubtfulFit = 0.5;  ///< below, a better alignment may have been missed
-inline constexpr double kChanceFit = 0.25;   ///< what fits anywhere
-
 /// Whether an alignment may be right: one that went astray lays hardly any structure on the map,
 /// and mostly does not converge. What fits ever less, and well, is another kind of place.
 inline bool is_explained(const Solution& solution, double relative_fit) {
-  return relative_fit > (solution.converged ? kChanceFit : kDoubtfulFit);
+  return relative_fit >
+         (solution.converged ? registration::kChanceFit : registration::kDoubtfulFit);
 }
 
 }  // namespace lilo::core

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/registration/weak_directions.hpp"
 
+#include "core/constants.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -9,7 +11,6 @@ namespace lilo::core {
 
 WeakDirections weak_directions(const Matrix6d& scan_information, const Matrix6d& motion_information,
                                const Eigen::Quaterniond& R_odom_sensor) {
-  constexpr double kHalf = 0.5;
   WeakDirections weak;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> solver(scan_information,
                                                                   motion_information);
@@ -17,7 +18,7 @@ WeakDirections weak_directions(const Matrix6d& scan_information, const Matrix6d&
   for (int k = 0; k < kMaxWeakDirections; ++k) {  // eigenvalues grow
     const double ratio = std::max(0.0, solver.eigenvalues()[k]);
     const double from_scan = ratio / (1.0 + ratio);
-    if (!(from_scan < kHalf)) break;
+    if (!(from_scan < registration::kWeakShare)) break;
     const Vector6d along = solver.eigenvectors().col(k).normalized();
     WeakDirection& one = weak.all[static_cast<std::size_t>(weak.count++)];
     one.direction << R_odom_sensor.conjugate() * along.tail<3>(),

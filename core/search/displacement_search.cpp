@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kNeighbours = 27;  // one step to either side, and the hypothesis itself
 
 int coarse_steps_in(double radius, double step) {
-  return static_cast<int>(std::ceil(radius / (search::kCoarse * step)));
+  return static_cast<int>(std::ceil(radius / (search::kCoarseSteps * step)));
 }
 
 double angle_between(double a_rad, double b_rad) {
@@ -19,10 +19,9 @@ double angle_between(double a_rad, double b_rad) {
 
 /// Whether alignments from both would come to the same place.
 bool are_alike(const Displacement& a, const Displacement& b) {
-  constexpr double kSame_rad = search::kSamePlace_m / kLever_m;
   return (a.along_m - b.along_m).norm() < search::kSamePlace_m &&
-         angle_between(a.yaw_rad, b.yaw_rad) < kSame_rad &&
-         angle_between(a.begin_yaw_rad, b.begin_yaw_rad) < kSame_rad;
+         angle_between(a.yaw_rad, b.yaw_rad) < search::kSamePlace_rad &&
+         angle_between(a.begin_yaw_rad, b.begin_yaw_rad) < search::kSamePlace_rad;
 }
 
 }  // namespace
@@ -34,9 +33,9 @@ DisplacementSearch::DisplacementSearch(std::size_t most_features)
   const auto width = [](double radius, double step) {
     return 2 * static_cast<std::size_t>(coarse_steps_in(radius, step)) + 1;
   };
-  const std::size_t across = width(kFarthest.along_m, search::kStep_m);
-  hypotheses_.reserve(across * across * width(kFarthest.yaw_rad, search::kStep_rad) +
-                      search::kRefined * kNeighbours);
+  const std::size_t across = width(kFarthest.along_m, search::kPlaceStep_m);
+  hypotheses_.reserve(across * across * width(kFarthest.yaw_rad, search::kYawStep_rad) +
+                      search::kRefinedPlaces * kNeighbours);
 }
 
 void DisplacementSearch::set_map(const CellMap& structure, const Eigen::Vector3d& center_m) {
@@ -46,7 +45,7 @@ void DisplacementSearch::set_map(const CellMap& structure, const Eigen::Vector3d
   structure.for_each_mean([&](const Eigen::Vector3d& mean_m) {
     const Eigen::Vector2d from_center_m = mean_m.head<2>() - center_m_;
     map_.add(from_center_m, search::kMapAround);
-    thick_map_.add(from_center_m, search::kCoarse * search::kMapAround);
+    thick_map_.add(from_center_m, search::kCoarseSteps * search::kMapAround);
   });
 }
 
@@ -66,18 +65,19 @@ std::span<const Displacement> DisplacementSearch::find(const std::vector<Feature
 
 void DisplacementSearch::try_all(const SearchRadius& radius) {
   const int farthest =
-      coarse_steps_in(std::min(radius.along_m, kFarthest.along_m), search::kStep_m);
-  const int turns = coarse_steps_in(std::min(radius.yaw_rad, kFarthest.yaw_rad), search::kStep_rad);
-  const int begin_turns = coarse_steps_in(radius.begin_yaw_rad, search::kStep_rad);
-  constexpr double kTurn_rad = search::kCoarse * search::kStep_rad;
+      coarse_steps_in(std::min(radius.along_m, kFarthest.along_m), search::kPlaceStep_m);
+  const int turns =
+      coarse_steps_in(std::min(radius.yaw_rad, kFarthest.yaw_rad), search::kYawStep_rad);
+  const int begin_turns = coarse_steps_in(radius.begin_yaw_rad, search::kYawStep_rad);
+  const double step_rad = search::kCoarseSteps * search::kYawStep_rad;
   for (int yaw = -turns; yaw <= turns; ++yaw) {
-    const double yaw_rad = kTurn_rad * yaw;
+    const double yaw_rad = step_rad * yaw;
     if (onset_ == Onset::before_scan) {
       try_turned({{0.0, 0.0}, yaw_rad, yaw_rad}, farthest);
       continue;
     }
     for (int begin = -begin_turns; begin <= begin_turns; ++begin) {
-      try_turned({{0.0, 0.0}, yaw_rad, kTurn_rad * begin}, farthest);
+      try_turned({{0.0, 0.0}, yaw_rad, step_rad * begin}, farthest);
     }
   }
 }
@@ -89,7 +89,7 @@ void DisplacementSearch::try_turned(const Displacement& turned, int farthest) {
   for (int x = -farthest; x <= farthest; ++x) {
     for (int y = -farthest; y <= farthest; ++y) {
       if (x * x + y * y > farthest * farthest) continue;
-      by.along_m = search::kCoarse * search::kStep_m * Eigen::Vector2d(x, y);
+      by.along_m = search::kCoarseSteps * search::kPlaceStep_m * Eigen::Vector2d(x, y);
       score(thick_map_, by);
     }
   }
@@ -97,7 +97,7 @@ void DisplacementSearch::try_turned(const Displacement& turned, int farthest) {
 
 /// By one step of yaw, and by so many along. Leaves the hypotheses of the finer map alone.
 void DisplacementSearch::refine_best(int along) {
-  const std::size_t best = std::min(search::kRefined, hypotheses_.size());
+  const std::size_t best = std::min(search::kRefinedPlaces, hypotheses_.size());
   const auto end_of_best = hypotheses_.begin() + static_cast<std::ptrdiff_t>(best);
   std::partial_sort(hypotheses_.begin(), end_of_best, hypotheses_.end(),
                     [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
@@ -106,12 +106,12 @@ void DisplacementSearch::refine_best(int along) {
     const Displacement middle = hypotheses_[k].by;
     for (int yaw = -1; yaw <= 1; ++yaw) {
       Displacement by = middle;
-      by.yaw_rad += search::kStep_rad * yaw;
+      by.yaw_rad += search::kYawStep_rad * yaw;
       if (onset_ == Onset::before_scan) by.begin_yaw_rad = by.yaw_rad;
       turn(map_, by);
       for (int x = -along; x <= along; ++x) {
         for (int y = -along; y <= along; ++y) {
-          by.along_m = middle.along_m + search::kStep_m * Eigen::Vector2d(x, y);
+          by.along_m = middle.along_m + search::kPlaceStep_m * Eigen::Vector2d(x, y);
           score(map_, by);
         }
       }
@@ -122,7 +122,8 @@ void DisplacementSearch::refine_best(int along) {
 
 /// The best hypotheses, of those alike the best one.
 void DisplacementSearch::choose() {
-  for (found_count_ = 0; found_count_ < kMostFound && !hypotheses_.empty(); ++found_count_) {
+  for (found_count_ = 0; found_count_ < search::kMostPlaces && !hypotheses_.empty();
+       ++found_count_) {
     const Displacement best =
         std::max_element(hypotheses_.begin(), hypotheses_.end(), has_lower_score)->by;
     found_[found_count_] = best;
@@ -138,14 +139,14 @@ void DisplacementSearch::turn(TopDownGrid& map, const Displacement& turned) {
                          Subsample::quarter);
   const Eigen::Vector2d way_m = (end_.translation_m - begin_.translation_m).head<2>();
   const Eigen::Vector2d end_m = end_.translation_m.head<2>() - center_m_;
-  constexpr double kMost_m = kFarthest.along_m + (search::kCoarse + 1.0) * search::kStep_m;
+  const double most_m = kFarthest.along_m + (search::kCoarseSteps + 1.0) * search::kPlaceStep_m;
   map.place(points_, end_m - Eigen::Rotation2Dd(turned.begin_yaw_rad) * way_m, end_m,
-            Subsample::quarter, static_cast<int>(kMost_m * TopDownGrid::kPerMetre));
+            Subsample::quarter, static_cast<int>(most_m * search::kCellsPerMetre));
 }
 
 /// After turn() on the same map.
 void DisplacementSearch::score(const TopDownGrid& map, const Displacement& by) {
-  const Eigen::Vector2d cells = static_cast<double>(TopDownGrid::kPerMetre) * by.along_m;
+  const Eigen::Vector2d cells = static_cast<double>(search::kCellsPerMetre) * by.along_m;
   hypotheses_.push_back({by, map.hits(static_cast<int>(std::lround(cells.x())),
                                       static_cast<int>(std::lround(cells.y())))});
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/map/cell_map.hpp"
 #include "core/motion/motion_state.hpp"
 #include "core/motion/trajectory.hpp"
 #include "core/search/hypothesis.hpp"
-#include "core/search/search_constants.hpp"
 #include "core/search/top_down_grid.hpp"
 
 #include <Eigen/Core>
@@ -38,10 +38,10 @@ struct SearchRadius {
 /// Not thread-safe; no allocation after construction.
 class DisplacementSearch {
  public:
-  static constexpr std::size_t kMostFound = 3;
   /// Any turn, and as far as a vehicle may depart from its prediction in the longest gap.
-  static constexpr SearchRadius kFarthest{
-      0.5 * search::kAcceleration_mps2 * kLongestGap_s * kLongestGap_s, std::numbers::pi, 0.0};
+  static inline const SearchRadius kFarthest{
+      0.5 * search::kMostAcceleration_mps2 * motion::kLongestGap_s * motion::kLongestGap_s,
+      std::numbers::pi, 0.0};
 
   /// `most_features`: of one scan.
   explicit DisplacementSearch(std::size_t most_features);
@@ -70,7 +70,7 @@ class DisplacementSearch {
   Pose begin_, end_;  // as predicted
   Onset onset_ = Onset::before_scan;
   std::vector<Hypothesis> hypotheses_;
-  std::array<Displacement, kMostFound> found_;
+  std::array<Displacement, search::kMostPlaces> found_;
   std::size_t found_count_ = 0;
 };
 

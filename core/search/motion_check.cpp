@@ -19,8 +19,8 @@ void MotionCheck::clear() {
 
 void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
                       const ScanTiming& timing) {
-  newest_ = (newest_ + 1) % search::kScans;
-  count_ = std::min(count_ + 1, search::kScans);
+  newest_ = (newest_ + 1) % search::kMotionScans;
+  count_ = std::min(count_ + 1, search::kMotionScans);
   Scan& scan = scans_[newest_];
   structure_.assign(features);
   scan.points.assign(structure_, T_begin.rotation, T_end.rotation);
@@ -74,15 +74,14 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
   // Where scans hardly have cells in common, these tell nothing: all cells count as chance. The
   // best of sixteen false motions is two sigmas better now and then where someone carries the
   // sensor.
-  return is_significant(alone - least, alone - tracked, search::kClearly) &&
-         tracked - least > search::kBeyondDoubt * std::sqrt(static_cast<double>(tracked));
+  return is_significant(alone - least, alone - tracked, search::kPreferSigmas) &&
+         tracked - least > search::kDropSigmas * std::sqrt(static_cast<double>(tracked));
 }
 
 bool MotionCheck::is_refuted(const Eigen::Vector2d& axis) {
-  constexpr int kOnEnd = 2;
-  if (count_ < search::kScans) return false;
+  if (count_ < search::kMotionScans) return false;
   times_refuted_ = is_clearly_better(axis) ? times_refuted_ + 1 : 0;
-  return times_refuted_ >= kOnEnd;
+  return times_refuted_ >= search::kRefutingScans;
 }
 
 }  // namespace lilo::core

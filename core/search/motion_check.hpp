@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/motion/scan_timing.hpp"
 #include "core/pose.hpp"
 #include "core/search/hypothesis.hpp"
-#include "core/search/search_constants.hpp"
 #include "core/search/top_down_grid.hpp"
 
 #include <array>
@@ -48,7 +48,7 @@ class MotionCheck {
   int least_occupied(const Eigen::Vector2d& axis, Subsample subsample);
   bool is_clearly_better(const Eigen::Vector2d& axis);
 
-  std::array<Scan, search::kScans> scans_;
+  std::array<Scan, search::kMotionScans> scans_;
   std::size_t count_ = 0, newest_ = 0;
   int times_refuted_ = 0;      // on end
   StructurePoints structure_;  // of the newest

@@ -8,6 +8,8 @@
 namespace lilo::core {
 namespace {
 
+constexpr std::size_t kMostHypotheses = 4096;  // more than try_all() makes
+
 /// The motion that a displacement within a second makes of another one.
 Twist changed(const Twist& twist, const Displacement& by) {
   Twist other = twist;
@@ -24,7 +26,7 @@ bool differ(const Twist& a, const Twist& b, double mps) {
 }
 
 MotionSearch::MotionSearch(std::size_t most_features) : grid_(most_features) {
-  hypotheses_.reserve(search::kMostHypotheses);
+  hypotheses_.reserve(kMostHypotheses);
   for (Scan& scan : scans_) {
     scan.structure.reserve(most_features);
     scan.points.reserve(most_features);
@@ -101,15 +103,15 @@ void MotionSearch::try_all() {
   hypotheses_.clear();
   hypotheses_.push_back({{}, score({}, Subsample::quarter)});
   for (int step = -search::kYawRates; step <= search::kYawRates; ++step) {
-    Displacement by{.yaw_rad = search::kYawPerSpeed_radpm * search::kStep_mps * step};
+    Displacement by{.yaw_rad = search::kYawPerSpeed_radpm * search::kSpeedStep_mps * step};
     turn(changed({}, by).angular_radps, Subsample::quarter);
     const auto try_turned = [&] {
       hypotheses_.push_back({by, score_turned(changed({}, by), Subsample::quarter)});
     };
     if (step != 0) try_turned();
     for (int speed = 1; speed <= search::kSpeeds; ++speed) {
-      const double speed_mps = search::kStep_mps * speed;
-      if (speed_mps * std::abs(by.yaw_rad) > search::kAcceleration_mps2) break;
+      const double speed_mps = search::kSpeedStep_mps * speed;
+      if (speed_mps * std::abs(by.yaw_rad) > search::kMostAcceleration_mps2) break;
       for (int heading = 0; heading < search::kHeadings; ++heading) {
         const double heading_rad = 2.0 * std::numbers::pi * heading / search::kHeadings;
         by.along_m = {speed_mps * std::cos(heading_rad), speed_mps * std::sin(heading_rad)};
@@ -123,7 +125,7 @@ void MotionSearch::try_all() {
 void MotionSearch::keep_likely() {
   const int best = std::max_element(hypotheses_.begin(), hypotheses_.end(), has_lower_score)->score;
   std::erase_if(hypotheses_, [&](const Hypothesis& other) {
-    return is_significant(best, other.score, search::kBeyondDoubt);
+    return is_significant(best, other.score, search::kDropSigmas);
   });
   for (Hypothesis& one : hypotheses_) one.score = score(changed({}, one.by), Subsample::all);
 }
@@ -132,8 +134,8 @@ MotionSearch::Result MotionSearch::find() {
   const int stationary = score({}, Subsample::all);
   const int alone = alone_[static_cast<std::size_t>(Subsample::all)];
   const int most = alone - alone / static_cast<int>(count_);  // all scans in the same cells
-  if (!is_significant(most, stationary, search::kClearly)) {
-    return {.is_unambiguous = is_significant(stationary, 0, search::kClearly)};
+  if (!is_significant(most, stationary, search::kPreferSigmas)) {
+    return {.is_unambiguous = is_significant(stationary, 0, search::kPreferSigmas)};
   }
   try_all();
   keep_likely();
@@ -143,9 +145,9 @@ MotionSearch::Result MotionSearch::find() {
   result.is_unambiguous =
       std::none_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& other) {
         return differ(changed({}, other.by), result.twist, search::kSameMotion_mps) &&
-               !is_significant(best.score, other.score, search::kClearly);
+               !is_significant(best.score, other.score, search::kPreferSigmas);
       });
-  result.moves = is_significant(best.score, stationary, search::kClearly);
+  result.moves = is_significant(best.score, stationary, search::kPreferSigmas);
   result.twist = result.moves ? refine(result.twist, Subsample::all) : Twist{};
   return result;
 }
@@ -153,7 +155,7 @@ MotionSearch::Result MotionSearch::find() {
 Twist MotionSearch::refine(const Twist& about, Subsample subsample) {
   Twist best = about;
   int best_score = score(about, subsample);
-  double step = search::kStep_mps;
+  double step = search::kSpeedStep_mps;
   for (int k = 0; k < search::kRefinements; ++k) {
     step *= 0.5;
     const Twist middle = best;
@@ -177,7 +179,7 @@ Twist MotionSearch::refine(const Twist& about, Subsample subsample) {
 
 bool MotionSearch::is_better_than_track(const Twist& twist, std::span<const Track> tracks) {
   const int supposed = score(twist, Subsample::all);
-  return is_significant(supposed, score_of(tracks), search::kProbably);
+  return is_significant(supposed, score_of(tracks), search::kRestartSigmas);
 }
 
 }  // namespace lilo::core

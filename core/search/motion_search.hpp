@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/motion/scan_timing.hpp"
 #include "core/motion/trajectory.hpp"
 #include "core/search/hypothesis.hpp"
-#include "core/search/search_constants.hpp"
 #include "core/search/top_down_grid.hpp"
 
 #include <array>
@@ -37,7 +37,7 @@ class MotionSearch {
   explicit MotionSearch(std::size_t most_features);
 
   void clear();
-  /// The next scan, at most search::kScans.
+  /// The next scan, at most search::kMotionScans.
   void add(const ScanTiming& timing, const std::vector<Feature>& features);
 
   /// Stationary, unless another motion is significantly better.
@@ -63,7 +63,7 @@ class MotionSearch {
   void try_all();
   void keep_likely();
 
-  std::array<Scan, search::kScans> scans_;
+  std::array<Scan, search::kMotionScans> scans_;
   std::size_t count_ = 0;
   std::array<int, 2> alone_{};  // by Subsample: cells that the scans occupy each for itself
   TopDownGrid grid_;

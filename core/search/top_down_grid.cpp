@@ -8,26 +8,27 @@
 namespace lilo::core {
 namespace {
 
-constexpr std::int32_t kSide = 512;  // cells; 256 m
-constexpr std::int32_t kOutside = kSide * kSide;
-constexpr float kPerMetre = TopDownGrid::kPerMetre;
+constexpr std::int32_t kOutside = search::kGridCells * search::kGridCells;
+constexpr float kPerMetre = search::kCellsPerMetre;
 
 /// Of a place that no integer holds, nan among them, one just outside.
 std::int32_t whole(float v) {
   v = v > -1.0F ? v : -1.0F;
-  return static_cast<std::int32_t>(v < static_cast<float>(kSide) ? v : static_cast<float>(kSide));
+  return static_cast<std::int32_t>(
+      v < static_cast<float>(search::kGridCells) ? v : static_cast<float>(search::kGridCells));
 }
 
 std::int32_t cell_at(float x, float y) {
   const std::int32_t column = whole(x), row = whole(y);
-  const bool outside = ((column | row) & -kSide) != 0;  // negative, or too large
-  return outside ? kOutside : row * kSide + column;
+  const bool outside = ((column | row) & -search::kGridCells) != 0;  // negative, or too large
+  return outside ? kOutside : row * search::kGridCells + column;
 }
 
 /// From where to where a scan was taken, in cells from the grid's corner.
 struct Sweep {
   Sweep(const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m)
-      : begin((kPerMetre * begin_m).cast<float>().array() + 0.5F * static_cast<float>(kSide)),
+      : begin((kPerMetre * begin_m).cast<float>().array() +
+              0.5F * static_cast<float>(search::kGridCells)),
         to_end((kPerMetre * (end_m - begin_m)).cast<float>()) {}
   [[nodiscard]] std::int32_t cell_of(const TopDownPoints& scan, std::size_t k) const {
     return cell_at(scan.x[k] + begin.x() + scan.s[k] * to_end.x(),
@@ -38,7 +39,7 @@ struct Sweep {
 
 /// How many of `size` structure points, in their order.
 std::size_t count_in(Subsample subsample, std::size_t size) {
-  return StructurePoints::before(subsample == Subsample::all ? StructurePoints::kParts : 1, size);
+  return StructurePoints::before(subsample == Subsample::all ? search::kSubsample : 1, size);
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ void StructurePoints::reserve(std::size_t size) {
 }
 
 std::size_t StructurePoints::before(std::size_t part, std::size_t size) {
-  return part * (size / kParts) + std::min(part, size % kParts);
+  return part * (size / search::kSubsample) + std::min(part, size % search::kSubsample);
 }
 
 void StructurePoints::assign(const std::vector<Feature>& features) {
@@ -59,7 +60,7 @@ void StructurePoints::assign(const std::vector<Feature>& features) {
   std::size_t n = 0;
   for (const Feature& f : features) {
     if (!is_structure(f)) continue;
-    const std::size_t k = before(n % kParts, size) + n / kParts;
+    const std::size_t k = before(n % search::kSubsample, size) + n / search::kSubsample;
     x_m[k] = f.x_m;
     y_m[k] = f.y_m;
     z_m[k] = f.z_m;
@@ -90,18 +91,17 @@ void TopDownPoints::assign(const StructurePoints& scan, const Eigen::Quaterniond
 
 void TopDownPoints::assign_turning(const StructurePoints& scan, const Eigen::Quaterniond& begin,
                                    const Eigen::Quaterniond& end, Subsample subsample) {
-  constexpr std::size_t kInstants = 16;
-  std::array<Eigen::Matrix<float, 2, 3>, kInstants> R;
-  for (std::size_t k = 0; k < kInstants; ++k) {
-    const double middle = (static_cast<double>(k) + 0.5) / kInstants;
+  std::array<Eigen::Matrix<float, 2, 3>, search::kTurnInstants> R;
+  for (std::size_t k = 0; k < search::kTurnInstants; ++k) {
+    const double middle = (static_cast<double>(k) + 0.5) / search::kTurnInstants;
     R[k] = (kPerMetre * begin.slerp(middle, end).toRotationMatrix().topRows<2>()).cast<float>();
   }
   for (std::vector<float>* part : {&x, &y}) part->resize(scan.s.size());
   s = scan.s;
   const std::size_t n = count_in(subsample, s.size());
   for (std::size_t k = 0; k < n; ++k) {
-    const auto instant = static_cast<std::size_t>(s[k] * kInstants);
-    const Eigen::Vector2f seen = R[std::min(instant, kInstants - 1)] *
+    const auto instant = static_cast<std::size_t>(s[k] * search::kTurnInstants);
+    const Eigen::Vector2f seen = R[std::min(instant, search::kTurnInstants - 1)] *
                                  Eigen::Vector3f(scan.x_m[k], scan.y_m[k], scan.z_m[k]);
     x[k] = seen.x();
     y[k] = seen.y();
@@ -154,14 +154,14 @@ void TopDownGrid::place(const TopDownPoints& scan, const Eigen::Vector2d& begin_
   placed_ = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const std::int32_t at = sweep.cell_of(scan, k);
-    const std::int32_t x = at % kSide, y = at / kSide;
+    const std::int32_t x = at % search::kGridCells, y = at / search::kGridCells;
     at_[placed_] = at;
-    placed_ += std::min(x, y) >= margin && std::max(x, y) < kSide - margin ? 1 : 0;
+    placed_ += std::min(x, y) >= margin && std::max(x, y) < search::kGridCells - margin ? 1 : 0;
   }
 }
 
 int TopDownGrid::hits(int x, int y) const {
-  const std::uint8_t* taken = taken_.data() + std::ptrdiff_t{y} * kSide + x;
+  const std::uint8_t* taken = taken_.data() + std::ptrdiff_t{y} * search::kGridCells + x;
   const std::uint8_t now = now_;
   int count = 0;
   for (std::size_t k = 0; k < placed_; ++k) count += static_cast<int>(taken[at_[k]] == now);

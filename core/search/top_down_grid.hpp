@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/feature.hpp"
 
 #include <Eigen/Geometry>
@@ -18,8 +19,7 @@ struct StructurePoints {
   std::vector<float> x_m, y_m, z_m;
   std::vector<float> s;  ///< as Feature::s
 
-  static constexpr std::size_t kParts = 4;
-  /// How many of `size` come before `part`: all for kParts.
+  /// How many of `size` come before `part`: all for search::kSubsample.
   static std::size_t before(std::size_t part, std::size_t size);
   void reserve(std::size_t size);
   /// Leaves ground out: it looks the same at every speed.
@@ -52,8 +52,6 @@ struct TopDownPoints {
 /// Not thread-safe; no allocation after construction.
 class TopDownGrid {
  public:
-  static constexpr int kPerMetre = 2;  ///< cells: as wide as a trunk or a post with its blur
-
   /// `most`: points of one scan.
   explicit TopDownGrid(std::size_t most);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/drift.hpp"
 
+#include "core/constants.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -24,19 +26,17 @@ void Drift::move(const Eigen::Vector3d& by_m) {
 
 void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor,
                     int keyframes) {
-  // An error of one keyframe moves what is seen of the map by its part in it. That is about a
-  // dozen, fewer in a young map; the first, which is aligned with nothing, stands for four. Rough
-  // figures: core/README.md says what comes of them.
-  constexpr int kSeenAtOnce = 13;
-  constexpr double kSteady = 0.5;  // of an alignment's standard error
-  const double part = 1.0 / std::min(keyframes + 3, kSeenAtOnce);
+  // An error of one keyframe moves what is seen of the map by its part in it, which is larger in a
+  // young map. The first keyframe, which is aligned with nothing, counts as several.
+  const double part =
+      1.0 / std::min(keyframes + tracking::kFirstKeyframe - 1, tracking::kKeyframesInView);
   random_ += part * part * alignment;
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(alignment);
   if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] >= 0.0)) return;
   Matrix6d sensor_to_odom = Matrix6d::Zero();
   sensor_to_odom.topLeftCorner<3, 3>() = R_odom_sensor.toRotationMatrix();
   sensor_to_odom.bottomRightCorner<3, 3>() = sensor_to_odom.topLeftCorner<3, 3>();
-  steady_ += kSteady * part * eigen.operatorSqrt() * sensor_to_odom;
+  steady_ += tracking::kSteadyError * part * eigen.operatorSqrt() * sensor_to_odom;
 }
 
 // White noise of density q makes a position uncertain by q t^3 / 3: by q t^2 dt more in a moment.
@@ -50,9 +50,9 @@ void Drift::coast(const Eigen::Matrix3d& axes, double acceleration_density, doub
 void Drift::see(double span_s) { coasted_s_ = std::max(0.0, coasted_s_ - span_s); }
 
 Matrix6d Drift::covariance() const {
-  constexpr double kScale = 3e-4;  // paths come out too short by up to so much of their length
   Matrix6d sum = random_ + steady_ * steady_.transpose();
-  sum.bottomRightCorner<3, 3>() += kScale * kScale * travelled_m_ * travelled_m_.transpose();
+  sum.bottomRightCorner<3, 3>() +=
+      tracking::kPathScale * tracking::kPathScale * travelled_m_ * travelled_m_.transpose();
   return sum;
 }
 

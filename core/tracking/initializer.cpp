@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/initializer.hpp"
 
+#include "core/constants.hpp"
 #include "core/image/selection.hpp"
 
 #include <algorithm>
@@ -9,12 +10,9 @@
 namespace lilo::core {
 namespace {
 
-// What is believed of a velocity near another, 1 sigma: near rest or the one tracked.
-constexpr double kNear_mps = 0.5;
-
 /// Whether a motion is not the one tracked.
 bool is_elsewhere(const Twist& twist, const Twist& tracked) {
-  return differ(twist, tracked, kNear_mps);
+  return differ(twist, tracked, tracking::kSameVelocity_mps);
 }
 
 }  // namespace
@@ -40,7 +38,7 @@ bool Initializer::must_begin_again(const ScanTiming& scan, std::size_t feature_c
   if (feature_count > 2 * scans_[0].feature_count) return true;
   // Long ago: only a sensor at rest may be supposed to have gone on as it did.
   const double unseen_s = std::abs(seconds_between(*state.end_ns, scan.start_ns));
-  return unseen_s > kShortGap_s && (count_ == 1 || !is_stationary_);
+  return unseen_s > motion::kShortGap_s && (count_ == 1 || !is_stationary_);
 }
 
 bool Initializer::add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
@@ -97,8 +95,8 @@ void Initializer::add_velocity_prior(const Start& start, Prior& prior) {
 Initializer::Start Initializer::search() {
   const MotionSearch::Result found = search_.find();
   is_unambiguous_ = found.is_unambiguous;
-  return {found.twist, found.twist.linear_mps, found.moves ? search::kSearched_mps : kNear_mps,
-          found.moves};
+  return {found.twist, found.twist.linear_mps,
+          found.moves ? search::kSearchedVelocity_mps : tracking::kSameVelocity_mps, found.moves};
 }
 
 /// Aligns the second scan when the sensor moved by about `start.twist` during both: the first one,
@@ -125,18 +123,16 @@ Solution Initializer::try_start(const Start& start, LocalOdometry& local) {
 /// then on as far as the last step tells to go (Barzilai and Borwein, 1988): compensated returns
 /// need no deskewing, and all of the way is right.
 Solution Initializer::refine(Start& start, LocalOdometry& local) {
-  constexpr double kSpeedEnough_mps = 0.01;
-  constexpr int kMaxRounds = 15;
-  double part = 0.5;
+  double part = tracking::kFirstPart;
   Eigen::Vector3d step_mps = Eigen::Vector3d::Zero(), last_lack_mps = step_mps;
   Solution solution = try_start(start, local);
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < tracking::kRefiningRounds; ++round) {
     const Twist found = twist_between({}, solution.trajectory.end(), since_first_s(1));
     const Eigen::Vector3d lack_mps = found.linear_mps - start.twist.linear_mps;
-    if (lack_mps.norm() < kSpeedEnough_mps) break;
+    if (lack_mps.norm() < tracking::kConvergedVelocity_mps) break;
     const Eigen::Vector3d less_mps = last_lack_mps - lack_mps;
     if (round > 0 && !less_mps.isZero(0.0)) {
-      part = std::clamp(step_mps.dot(less_mps) / less_mps.squaredNorm(), 0.25, 1.0);
+      part = std::clamp(step_mps.dot(less_mps) / less_mps.squaredNorm(), tracking::kLeastPart, 1.0);
     }
     step_mps = part * lack_mps;
     last_lack_mps = lack_mps;
@@ -181,17 +177,16 @@ Initializer::Start Initializer::best_start(const Twist& tracked, bool was_lost) 
   // What is elsewhere with all points is, but for chance, with a quarter of them too.
   Twist twist = search_.refine(tracked, Subsample::quarter);
   if (is_elsewhere(twist, tracked)) twist = search_.refine(tracked, Subsample::all);
-  return {twist, twist.linear_mps, kNear_mps, true};
+  return {twist, twist.linear_mps, tracking::kSameVelocity_mps, true};
 }
 
 /// A sensor that was taken to stand may have crept, where a step of a scan is less than the scans
 /// can tell: a map so begun is smeared by it, and holds the sensor back later.
 bool Initializer::recheck_stationary(LocalOdometry& local) {
-  constexpr std::size_t kEnough = 4;  // scans
-  if (count_ < kEnough) return false;
+  if (count_ < tracking::kScansToRecheck) return false;
   const Twist tracked = tracked_twist();
   if (is_elsewhere(assumed_, tracked))
-    replay({tracked, tracked.linear_mps, kNear_mps, true}, local);
+    replay({tracked, tracked.linear_mps, tracking::kSameVelocity_mps, true}, local);
   return true;
 }
 
@@ -203,7 +198,7 @@ bool Initializer::recheck_moving(bool was_lost, LocalOdometry& local) {
       search_.is_better_than_track(other.twist, std::span(tracks_).first(count_))) {
     replay(other, local);
   }
-  return count_ == search::kScans;
+  return count_ == search::kMotionScans;
 }
 
 }  // namespace lilo::core

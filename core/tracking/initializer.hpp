@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/search/motion_search.hpp"
 #include "core/tracking/local_odometry.hpp"
 #include "core/tracking/observation.hpp"
@@ -79,8 +80,8 @@ class Initializer {
   bool recheck_moving(bool was_lost, LocalOdometry& local);
 
   std::size_t most_for_map_;
-  std::array<Remembered, search::kScans> scans_;
-  std::array<MotionSearch::Track, search::kScans> tracks_;  // the newest as predicted
+  std::array<Remembered, search::kMotionScans> scans_;
+  std::array<MotionSearch::Track, search::kMotionScans> tracks_;  // the newest as predicted
   std::size_t count_ = 0;
   MotionSearch search_;
   bool is_unambiguous_ = false;  // no other motion fits nearly as well

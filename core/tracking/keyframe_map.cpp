@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/keyframe_map.hpp"
 
+#include "core/constants.hpp"
 #include "core/image/selection.hpp"
 
 #include <array>
 
 namespace lilo::core {
 namespace {
-
-constexpr int kYoungMap = 5;  // keyframes of a map that may know too little
 
 LocalMaps make_cells(const DefaultConfig& c) {
   const auto map = [&](FeatureKind kind, double cell_m, int capacity) {
@@ -70,7 +69,7 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
   held_.end_ns = scan.timing.end_ns;
   held_.finest_level = scan.finest_level;
   // While there is little else, a scan late is too late.
-  if (keyframes_ < kYoungMap) insert_held();
+  if (keyframes_ < tracking::kYoungMap) insert_held();
   ++keyframes_;
   T_odom_keyframe_ = scan.T_odom_sensor;
   return true;
@@ -79,10 +78,11 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
 /// When the sensor has moved; and while the map knows too little. One scan of an open country fills
 /// few cells with enough points; standing still adds them.
 bool KeyframeMap::is_due(const AlignedScan& scan) const {
-  constexpr double kKnowsEnough = 0.5;
   if (keyframes_ == 0) return true;
   const Solution& solution = scan.solution;
-  if (keyframes_ < kYoungMap && solution.matched < kKnowsEnough * solution.looked_up) return true;
+  if (keyframes_ < tracking::kYoungMap &&
+      solution.matched < tracking::kMatchedEnough * solution.looked_up)
+    return true;
   const Pose moved_by = T_odom_keyframe_.inverse() * scan.T_odom_sensor;
   return moved_by.translation_m.norm() >= config_.keyframe_m ||
          so3_log(moved_by.rotation).norm() >= config_.keyframe_rad;
@@ -91,7 +91,7 @@ bool KeyframeMap::is_due(const AlignedScan& scan) const {
 void KeyframeMap::hold(const std::vector<Feature>& features, bool with_overhead) {
   // In an abrupt turn after the start, near points hold the pose. Later the near cells are full,
   // and far points hold the attitude.
-  const Evenly evenly = keyframes_ < kYoungMap ? Evenly::in_image : Evenly::along_rings;
+  const Evenly evenly = keyframes_ < tracking::kYoungMap ? Evenly::in_image : Evenly::along_rings;
   thin_out(features, static_cast<std::size_t>(config_.map_features), evenly, held_.features,
            with_overhead);
   held_.is_waiting = true;

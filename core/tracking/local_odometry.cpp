@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/local_odometry.hpp"
 
+#include "core/constants.hpp"
 #include "core/registration/comparison.hpp"
 #include "core/search/hypothesis.hpp"
-#include "core/search/search_constants.hpp"
 
 #include <Eigen/LU>
 
@@ -35,13 +35,13 @@ LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_featu
 
 Solution LocalOdometry::align_moving(const std::vector<Feature>& features, const Prior& prior,
                                      std::size_t finest_level) {
-  constexpr double kExceptional = search::kBeyondDoubt * search::kBeyondDoubt;
+  const double exceptional = tracking::kExceptionalSigmas * tracking::kExceptionalSigmas;
   Solution found = align(features, prior, finest_level);
-  if (normalised_innovation(prior, found.trajectory.knots).maxCoeff() < kExceptional) return found;
+  if (normalised_innovation(prior, found.trajectory.knots).maxCoeff() < exceptional) return found;
   Prior usual_prior = prior;
   usual_prior.has_heavy_tails = false;
   Solution usual = align(features, usual_prior, finest_level);
-  return is_significant(found.inliers, usual.inliers, search::kBeyondDoubt) ? found : usual;
+  return is_significant(found.inliers, usual.inliers, search::kDropSigmas) ? found : usual;
 }
 
 Solution LocalOdometry::align_moving_or_standing(const std::vector<Feature>& features,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/observation.hpp"
 
+#include "core/constants.hpp"
 #include "core/map/local_maps.hpp"
 
 #include <algorithm>
@@ -10,12 +11,12 @@ namespace {
 
 /// More than half of the structure is near, as in rooms.
 bool is_narrow(const std::vector<Feature>& features) {
-  constexpr float kNarrow_m = 5.0F;
   int near = 0, all = 0;
   for (const Feature& f : features) {
     if (f.kind == FeatureKind::ground) continue;
     ++all;
-    near += static_cast<int>(f.x_m * f.x_m + f.y_m * f.y_m + f.z_m * f.z_m < kNarrow_m * kNarrow_m);
+    near += static_cast<int>(f.x_m * f.x_m + f.y_m * f.y_m + f.z_m * f.z_m <
+                             tracking::kRoom_m * tracking::kRoom_m);
   }
   return 2 * near > all;
 }

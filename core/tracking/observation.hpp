@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/feature.hpp"
 #include "core/motion/scan_timing.hpp"
 #include "core/scan.hpp"
@@ -9,9 +10,6 @@
 #include <vector>
 
 namespace lilo::core {
-
-/// A scan with fewer features than this, or fewer that match, says too little.
-inline constexpr std::size_t kMinFeatures = 100;
 
 /// What the tracker looks at of one scan.
 struct Observation {
@@ -22,7 +20,7 @@ struct Observation {
   std::size_t finest_level = 0;                    ///< of the map, which these surroundings ask for
   bool is_complete = false;                        ///< Scan::complete
 
-  [[nodiscard]] bool says_enough() const { return features->size() >= kMinFeatures; }
+  [[nodiscard]] bool says_enough() const { return features->size() >= tracking::kMinFeatures; }
 };
 
 /// `selected` must outlive the result.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/pose_uncertainty.hpp"
 
+#include "core/constants.hpp"
+
 #include <Eigen/LU>
 
 namespace lilo::core {
@@ -10,8 +12,8 @@ void PoseUncertainty::begin_map(const MotionState& state) {
 }
 
 void PoseUncertainty::learn(const Vector6d& design_effect) {
-  constexpr double kNewest = 0.1;  // weight of a scan in the running mean
-  design_effect_ += kNewest * (design_effect.cwiseMax(kLeastDesignEffect) - design_effect_);
+  design_effect_ += tracking::kDesignEffectSmoothing *
+                    (design_effect.cwiseMax(tracking::kLeastDesignEffect) - design_effect_);
 }
 
 void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {
@@ -20,12 +22,11 @@ void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {
 
 void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state,
                             const Vector6d& density, double span_s) {
-  constexpr double kMostlyTurns = 0.3;
   Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
   int count = 0;
   for (int k = 0; k < weak.count && count < 3; ++k) {
     const Eigen::Vector3d along = weak.all[static_cast<std::size_t>(k)].direction.head<3>();  // m
-    if (along.norm() < kMostlyTurns) continue;
+    if (along.norm() < tracking::kMostlyTurns_m) continue;
     axes.col(count++) = state.T_odom_sensor.rotation * along.normalized();
   }
   if (count == 0) {
@@ -39,8 +40,7 @@ void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state
 Matrix6d PoseUncertainty::of_alignment(const MotionState& state) const {
   // The error of a cell is the same for all scans that are matched with it: so many of them count
   // as one. What is the same for longer is for Drift.
-  constexpr double kScansInView = 3.0;
-  const double unit = kScansInView * data_weight_;
+  const double unit = tracking::kScansSharingErrors * data_weight_;
   const Vector6d scale = (unit * design_effect_).cwiseSqrt();
   return scale.asDiagonal() * state.information.inverse().topLeftCorner<6, 6>() *
          scale.asDiagonal();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/motion/motion_state.hpp"
 #include "core/registration/weak_directions.hpp"
 #include "core/tracking/drift.hpp"
@@ -32,12 +33,11 @@ class PoseUncertainty {
   [[nodiscard]] Matrix6d covariance(const MotionState& state) const;
 
  private:
-  // A simulation without noise is no reason to be sure.
-  static constexpr double kLeastDesignEffect = 0.05;
   [[nodiscard]] Matrix6d of_alignment(const MotionState& state) const;
 
   double data_weight_;
-  Vector6d design_effect_ = Vector6d::Constant(kLeastDesignEffect);  // mean of the last second
+  Vector6d design_effect_ =
+      Vector6d::Constant(tracking::kLeastDesignEffect);  // mean of the last second
   Drift drift_;
 };
 

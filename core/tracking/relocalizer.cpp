@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/relocalizer.hpp"
 
+#include "core/constants.hpp"
 #include "core/registration/weak_directions.hpp"
-#include "core/search/search_constants.hpp"
 
 #include <Eigen/LU>
 
@@ -12,13 +12,6 @@
 namespace lilo::core {
 namespace {
 
-// How far a turn may go that begins within this scan, and one that began within the last scan.
-constexpr SearchRadius kSudden{0.0, 0.8, 0.0}, kSuddenBefore{0.0, 1.2, 0.4};
-// How well a place is known that was searched, 1 sigma; and how far off a turn in place may end.
-constexpr double kPlace_m = 0.5, kTurned_rad = kPlace_m / kLever_m;
-// Sum of robust weights. Structure leaves height and tilt open.
-constexpr double kMinGround = 0.5 * static_cast<double>(kMinFeatures);
-
 double inverse_square(double sigma) { return 1.0 / (sigma * sigma); }
 
 bool fits_less(const Solution& a, const Solution& b) {
@@ -26,15 +19,17 @@ bool fits_less(const Solution& a, const Solution& b) {
 }
 
 bool fits_significantly_better(const Solution& a, const Solution& b) {
-  return is_significant(a.structure_inliers, b.structure_inliers, search::kClearly);
+  return is_significant(a.structure_inliers, b.structure_inliers, search::kPreferSigmas);
 }
 
 /// Of a scan that ended about there; of its motion nothing is known.
 Prior prior_at(const Pose& T_end, Prior prior) {
   prior.T_begin = moved(T_end, prior.twist, -prior.span_s);
   prior.begin_information = initial_information();
-  prior.begin_information.diagonal().head<3>().setConstant(inverse_square(kTurned_rad));
-  prior.begin_information.diagonal().segment<3>(3).setConstant(inverse_square(kPlace_m));
+  prior.begin_information.diagonal().head<3>().setConstant(
+      inverse_square(tracking::kFoundPlace_rad));
+  prior.begin_information.diagonal().segment<3>(3).setConstant(
+      inverse_square(tracking::kFoundPlace_m));
   return prior;
 }
 
@@ -45,22 +40,23 @@ Prior prior_turned(const Displacement& by, bool may_begin_elsewhere, Prior prior
   prior.twist = twist_between(prior.T_begin, T_end, prior.span_s);
   Matrix6d of_pose = prior.begin_information.inverse().topLeftCorner<6, 6>();
   if (may_begin_elsewhere) {
-    of_pose.diagonal().head<3>().array() += kTurned_rad * kTurned_rad;
-    of_pose.diagonal().tail<3>().array() += kPlace_m * kPlace_m;
+    of_pose.diagonal().head<3>().array() += tracking::kFoundPlace_rad * tracking::kFoundPlace_rad;
+    of_pose.diagonal().tail<3>().array() += tracking::kFoundPlace_m * tracking::kFoundPlace_m;
   }
   prior.begin_information.setZero();
   prior.begin_information.topLeftCorner<6, 6>() = of_pose.inverse();
-  prior.begin_information.diagonal().segment<3>(6).setConstant(inverse_square(search::kTurn_radps));
-  prior.begin_information.diagonal().tail<3>().setConstant(inverse_square(search::kSearched_mps));
+  prior.begin_information.diagonal().segment<3>(6).setConstant(
+      inverse_square(search::kMostYawRate_radps));
+  prior.begin_information.diagonal().tail<3>().setConstant(
+      inverse_square(search::kSearchedVelocity_mps));
   return prior;
 }
 
 }  // namespace
 
 bool is_in_place(const Solution& found, const Prior& prior, double relative_fit) {
-  constexpr double kExactly_m = 0.2;
   const Pose T_end = predicted_end(prior);
-  return magnitude_m(T_end.inverse() * found.trajectory.end()) < kExactly_m &&
+  return magnitude_m(T_end.inverse() * found.trajectory.end()) < tracking::kInPlace_m &&
          relative_fit >= 1.0 &&
          weak_directions(found.data_information, found.motion_information, T_end.rotation).count ==
              0;
@@ -83,8 +79,9 @@ std::optional<Solution> Relocalizer::find(const Observation& scan, const Prior& 
   if (!best.converged) {
     best = local.align(*scan.features, prior_at(best.trajectory.end(), prior), scan.finest_level);
   }
-  const bool is_found = best.converged && best.inliers - best.structure_inliers > kMinGround &&
-                        last.fit.relative(best, scan.structure) > kDoubtfulFit;
+  const bool is_found = best.converged &&
+                        best.inliers - best.structure_inliers > tracking::kMinGround &&
+                        last.fit.relative(best, scan.structure) > registration::kDoubtfulFit;
   return is_found ? std::optional(best) : std::nullopt;
 }
 
@@ -95,8 +92,8 @@ void Relocalizer::attempt_all(const Observation& scan, const Prior& prior,
   const Trajectory predicted = local.unaligned(prior).trajectory;
   const Pose T_end = predicted.end();
   const double time_s = last.unseen_s(scan.timing) + scan.timing.span_s();
-  const SearchRadius radius{0.5 * search::kAcceleration_mps2 * time_s * time_s,
-                            search::kTurn_radps * time_s, 0.0};
+  const SearchRadius radius{0.5 * search::kMostAcceleration_mps2 * time_s * time_s,
+                            search::kMostYawRate_radps * time_s, 0.0};
   draw_map(last, T_end.translation_m, local);
   attempts_[0] = at_prediction;
   attempt_count_ = 1;
@@ -105,7 +102,7 @@ void Relocalizer::attempt_all(const Observation& scan, const Prior& prior,
         local.align(*scan.features, prior_at(displaced(T_end, by), prior), scan.finest_level);
     const Pose departed = T_end.inverse() * solution.trajectory.end();
     if (departed.translation_m.norm() < radius.along_m + search::kSamePlace_m &&
-        so3_log(departed.rotation).norm() < radius.yaw_rad + search::kSamePlace_m / kLever_m) {
+        so3_log(departed.rotation).norm() < radius.yaw_rad + search::kSamePlace_rad) {
       attempts_[attempt_count_++] = solution;
     }
   }
@@ -124,11 +121,16 @@ bool Relocalizer::is_unambiguous(const Solution& best) const {
 Solution Relocalizer::follow_turn(const Solution& found, const Observation& scan,
                                   const Prior& prior, const LastAlignment& last,
                                   LocalOdometry& local) {
-  if (last.fit.relative(found, scan.structure) > kDoubtfulFit) return found;
+  if (last.fit.relative(found, scan.structure) > registration::kDoubtfulFit) return found;
   std::optional<Solution> turned;
-  if (!last.is_doubtful) turned = better_turned(found, scan, prior, last, kSudden, local);
+  if (!last.is_doubtful)
+    turned = better_turned(found, scan, prior, last, {.yaw_rad = tracking::kSuddenTurn_rad}, local);
   // A turn that began at the very end of the last scan left that one fitting well.
-  if (!turned) turned = better_turned(found, scan, prior, last, kSuddenBefore, local);
+  if (!turned)
+    turned = better_turned(
+        found, scan, prior, last,
+        {.yaw_rad = tracking::kEarlierTurn_rad, .begin_yaw_rad = tracking::kTurnedBefore_rad},
+        local);
   return turned.value_or(found);
 }
 
@@ -148,7 +150,7 @@ std::optional<Solution> Relocalizer::better_turned(const Solution& found, const 
     const Solution other = local.align(*scan.features, prior_turned(by, may_begin_elsewhere, prior),
                                        scan.finest_level);
     const double departed_m = (other.trajectory.end().translation_m - place_m).norm();
-    if (departed_m < kPlace_m && fits_less(best, other)) best = other;
+    if (departed_m < tracking::kFoundPlace_m && fits_less(best, other)) best = other;
   }
   const bool is_better = fits_significantly_better(best, found) &&
                          is_explained(best, last.fit.relative(best, scan.structure));

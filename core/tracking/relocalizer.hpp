@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/registration/structure_fit.hpp"
 #include "core/search/displacement_search.hpp"
 #include "core/tracking/local_odometry.hpp"
@@ -67,7 +68,7 @@ class Relocalizer {
 
   DisplacementSearch search_;
   std::int64_t map_end_ns_ = 0;  // LastAlignment::end_ns when the search was given the map
-  std::array<Solution, DisplacementSearch::kMostFound + 1> attempts_;
+  std::array<Solution, search::kMostPlaces + 1> attempts_;
   std::size_t attempt_count_ = 0;
 };
 

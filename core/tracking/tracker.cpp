@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/tracker.hpp"
 
+#include "core/constants.hpp"
 #include "core/registration/weak_directions.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -9,11 +10,6 @@
 #include <optional>
 
 namespace lilo::core {
-namespace {
-
-constexpr int kScansToGiveUp = 10;  // in vain, on end
-
-}  // namespace
 
 Tracker::Tracker(const OdometryConfig& config)
     : selection_(config.default_profile.ground_features, config.default_profile.structure_features),
@@ -83,7 +79,7 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
     const bool is_known = initializer_.add(scan_, features, was_lost, local_);
     if (!is_known) return local_.predict(scan_.timing);
   }
-  phase_ = last_.unseen_s(scan_.timing) > kShortGap_s ? Phase::lost : Phase::tracking;
+  phase_ = last_.unseen_s(scan_.timing) > motion::kShortGap_s ? Phase::lost : Phase::tracking;
   return local_.predict(scan_.timing);
 }
 
@@ -108,7 +104,7 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
   const auto is_predicted = [&](const Solution& solution) {
     return is_in_place(solution, prior, last_.fit.relative(solution, scan_.structure));
   };
-  const bool is_searchable = last_.unseen_s(scan_.timing) <= kLongestGap_s;
+  const bool is_searchable = last_.unseen_s(scan_.timing) <= motion::kLongestGap_s;
   if (!is_searchable && !local_.is_standing() && !is_predicted(at_prediction)) {
     return std::nullopt;
   }
@@ -120,11 +116,11 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
 
 /// Whether an alignment found too little of the scan in the map.
 bool Tracker::is_lost(const Solution& solution) const {
-  constexpr double kMinWeight = 0.3;  // mean robust weight; a good alignment has 0.7 and more
   const double matched = solution.matched;
   // Not a part of the features: in a park a fifth of them may match, and the alignment be good.
-  return matched < static_cast<double>(kMinFeatures) || solution.inliers < kMinWeight * matched ||
-         last_.fit.relative(solution, scan_.structure) < kChanceFit;
+  return matched < static_cast<double>(tracking::kMinFeatures) ||
+         solution.inliers < tracking::kMinMeanWeight * matched ||
+         last_.fit.relative(solution, scan_.structure) < registration::kChanceFit;
 }
 
 Tracker::Alignment Tracker::judge(const Solution& solution) const {
@@ -138,7 +134,7 @@ Tracker::Alignment Tracker::judge(const Solution& solution) const {
   }
   a.is_explained = is_explained(solution, fit);
   if (phase_ == Phase::starting && !initializer_.is_stationary()) return a;  // or so it may be
-  const bool is_sure = scan_.is_complete && solution.converged && fit > kDoubtfulFit;
+  const bool is_sure = scan_.is_complete && solution.converged && fit > registration::kDoubtfulFit;
   a.status = is_sure ? TrackingStatus::tracking : TrackingStatus::degraded;
   return a;
 }
@@ -146,7 +142,7 @@ Tracker::Alignment Tracker::judge(const Solution& solution) const {
 void Tracker::accept(const Prior& prior) {
   const Solution& solution = alignment_.solution;
   const bool is_lost = alignment_.status == TrackingStatus::lost;
-  last_.is_doubtful = last_.fit.relative(solution, scan_.structure) < kDoubtfulFit;
+  last_.is_doubtful = last_.fit.relative(solution, scan_.structure) < registration::kDoubtfulFit;
   if (alignment_.is_explained) {
     last_.end_ns = scan_.timing.end_ns;
     if (phase_ != Phase::starting) last_.fit.learn(solution, scan_.structure);
@@ -197,7 +193,7 @@ void Tracker::watch_session() {
   }
   const bool refuted = is_refuted();
   if (refuted) alignment_.status = TrackingStatus::lost;
-  session_.is_over = refuted || session_.scans_in_vain == kScansToGiveUp;
+  session_.is_over = refuted || session_.scans_in_vain == tracking::kScansToGiveUp;
 }
 
 Estimate Tracker::estimate(const Scan& scan) const {

@@ -137,7 +137,7 @@ TEST(DisplacementSearch, OffersEveryPlaceThatLooksAlike) {
   const Trajectory predicted = trajectory_to(pose_at(0.0, 0.0, 0.0), 0.0);
   const auto places =
       search.find(seen_from(predicted, fence_m), predicted, DisplacementSearch::kFarthest);
-  ASSERT_EQ(places.size(), DisplacementSearch::kMostFound);
+  ASSERT_EQ(places.size(), search::kMostPlaces);
   for (std::size_t k = 0; k < places.size(); ++k) {
     EXPECT_LT(std::abs(places[k].along_m.y()), 1.5);
     EXPECT_NEAR(std::remainder(places[k].along_m.x(), kApart_m), 0.0, 1.0);

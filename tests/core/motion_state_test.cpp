@@ -42,7 +42,7 @@ TEST(Predict, KnowsLessAfterAGap) {
 }
 
 TEST(Predict, StaysWhereItWasOverALongGapOrAStepOfTheClock) {
-  for (const double gap_s : {kLongestGap_s + 0.1, 3600.0, -3600.0}) {
+  for (const double gap_s : {motion::kLongestGap_s + 0.1, 3600.0, -3600.0}) {
     for (const bool compensated : {false, true}) {
       ScanTiming scan = scan_after(gap_s);
       scan.motion_compensated = compensated;

@@ -144,7 +144,7 @@ TEST(Segments, AreAsManyAsTheProcessNoiseAsksFor) {
   density.head<3>().setConstant(3.0);  // 1 mrad at 0.040 s
   EXPECT_EQ(segments_for(density, 0.1, 2), 3);
   density.head<3>().setConstant(1e6);
-  EXPECT_EQ(segments_for(density, 0.1, 2), kMaxSegments);
+  EXPECT_EQ(segments_for(density, 0.1, 2), motion::kMaxSegments);
 }
 
 }  // namespace

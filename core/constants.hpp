@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+/// Every constant of profile `default` that is not in its configuration (odometry_config.hpp): its
+/// unit, its meaning and, after "Range:", the values between which it hardly matters. Both ends of
+/// a range were measured: the drift of simulated drives stayed within its spread or fell
+/// (core/README.md, "What mechanisms and constants are worth"). Without a range a constant was not
+/// measured. Sizes of batches and of memory stand where they are used.
+
+/// From returns to features.
+namespace lilo::core::image {
+
+/// Slope (tangent) above which a surface is structure. The ground under a tilted sensor or on a
+/// hill stays below it. 40 degrees. Range: 0.42 to 1.68.
+inline constexpr float kSteepSlope = 0.84F;
+/// Slope below which a flat surface overhead is a ceiling, however a hand tilts the sensor. 17
+/// degrees. Range: 0.15 to 0.6.
+inline constexpr float kLevelSlope = 0.3F;
+/// Two returns are on one surface up to this many times the distance at which the rings would meet
+/// a surface of that slope. Range: 1.5 to 6.
+inline constexpr float kSameSurface = 3.0F;
+/// Metres. Between rings that meet the ground farther apart its height is unknown. A map that took
+/// it for straight there was bent on every fast drive. Range: 8 to 15.
+inline constexpr float kMostRingGap_m = 10.0F;
+/// Radians. Azimuths nearer to the newest return, or to the first one of the scan, may still get
+/// returns: the lasers of one firing of an HDL-64E look up to 18 degrees apart. Range: 0.17 to 0.7.
+inline constexpr float kFiringSpread_rad = 0.35F;
+/// Pixels of an image at most, and so features. Range, with 64 rings: 512 to 1024 columns.
+inline constexpr int kMostPixels = 64 * 576;
+/// Metres: voxels of ground and of structure in the first scan, before they adapt.
+inline constexpr std::array<float, 2> kFirstVoxel_m{1.0F, 0.5F};
+/// Metres: bounds of a voxel.
+inline constexpr float kLeastVoxel_m = 0.05F, kMostVoxel_m = 5.0F;
+/// A voxel grows by this power of how many times too many features there were. On surfaces 0.5
+/// would be exact; less damps.
+inline constexpr float kVoxelPower = 0.35F;
+/// Passes over a scan at most, until the number of features is near its goal.
+inline constexpr int kVoxelPasses = 8;
+
+}  // namespace lilo::core::image
+
+/// Cells of the map.
+namespace lilo::core::map {
+
+/// Points that a distribution needs. Range: 3 to 12.
+inline constexpr float kMinPoints = 6.0F;
+/// Points that a cell remembers; older ones fade. What is seen of a thing moves with the sensor
+/// that passes it. Against its oldest views every path comes out too short.
+inline constexpr float kMemory = 30.0F;
+/// Metres, 1 sigma of one point about the surface around it. In a young cell the points come from
+/// few scans and share their errors.
+inline constexpr float kPoint_m = 0.05F, kYoungPoint_m = 0.1F;
+/// Keyframes: the age up to which a cell is young. Range: 5 to 10; 2 is too few.
+inline constexpr std::uint32_t kYoungCell = 5;
+/// A direction gives information if the points spread (1 sigma) over less than this part of the
+/// window's width; an even filling has 0.29. Range: 0.065 to 0.13; half of it costs 1.5 times the
+/// drift.
+inline constexpr float kThinSpread = 0.065F;
+/// Least cosine between the normal of ground and the vertical. Half of it changes no drift, but
+/// an abrupt turn was lost with it.
+inline constexpr float kUprightCosine = 0.7F;
+/// Metres: half cells farther away are forgotten. Rooms hide what is there. Range: 10 to 40.
+inline constexpr double kHalfCellRadius_m = 20.0;
+/// Scans in which the whole map is looked through for cells to forget.
+inline constexpr std::size_t kSweepScans = 64;
+
+}  // namespace lilo::core::map
+
+/// Motion within a scan and from scan to scan.
+namespace lilo::core::motion {
+
+/// Metres: where rotations and translations share a bound, a rotation counts as the way of what is
+/// seen so far away.
+inline constexpr double kLever_m = 10.0;
+
+/// Segments of a trajectory at most.
+inline constexpr int kMaxSegments = 4;
+/// Radians, 1 sigma of the motion between two knots, which gives the number of segments: 2 cm at
+/// 20 m. Range: 0.5e-3 to 2e-3.
+inline constexpr double kKnotMotion_rad = 1e-3;
+/// Instants of a scan at which its trajectory is sampled for the points.
+inline constexpr int kTrajectoryInstants = 128;
+
+/// Seconds: span of a scan whose stamps tell none, that of 600 revolutions a minute.
+inline constexpr double kNominalSpan_s = 0.1;
+/// Nanoseconds from one scan to the next within which no firing is missing.
+inline constexpr std::int64_t kNextFiring_ns = 1'000'000;
+/// Seconds: gaps below this, from one firing to the next, change no information. Range: 5e-6 to
+/// 2e-5.
+inline constexpr double kLeastGap_s = 1e-5;
+/// Seconds: over such a gap a prediction is good to half a cell, so that an alignment which begins
+/// there finds the sensor.
+inline constexpr double kShortGap_s = 0.35;
+/// Seconds: gap up to which a prediction is made. After a longer one the sensor is predicted where
+/// it was: either the clock was set, or the sensor may be anywhere.
+inline constexpr double kLongestGap_s = 2.5;
+
+/// 1 sigma (m, rad) of the pose before the first scan. Range: 0.5e-4 to 2e-4.
+inline constexpr double kInitialPose = 1e-4;
+/// m/s, 1 sigma of the velocity before the first scan: horizontal (range: 10 to 40), vertical
+/// (range: 0.25 to 1).
+inline constexpr double kInitialSpeed_mps = 20.0, kInitialClimb_mps = 0.5;
+/// rad/s, the same of the rates: yaw; roll and pitch.
+inline constexpr double kInitialYaw_radps = 0.5, kInitialTilt_radps = 0.1;
+
+/// Weight of the newest scan in the estimate of the process noise: about a second. Range: 0.1 to
+/// 0.3.
+inline constexpr double kNoiseSmoothing = 0.1;
+/// Factor of that estimate: what shakes faster than the scans come cancels in part between the
+/// middles of two. Range: 4 to 16, but for vibration (4) and jams (16).
+inline constexpr double kFasterThanScans = 8.0;
+/// Seconds: shorter intervals between scans tell no process noise.
+inline constexpr double kLeastInterval_s = 0.01;
+
+/// m/s and rad/s: a scan in which the sensor was slower counts as stationary.
+inline constexpr double kStationary_mps = 0.1, kStationary_radps = 0.1;
+/// Scans in a row that make the sensor stationary.
+inline constexpr int kStationaryScans = 5;
+/// Metres from where it was stationary: it has set off.
+inline constexpr double kSetOff_m = 0.1;
+/// 1 sigma of the place (m) and of the velocity (m/s) of a stationary sensor.
+inline constexpr double kStationaryPlace_m = 0.005, kStationaryVelocity_mps = 0.3;
+
+}  // namespace lilo::core::motion
+
+/// One scan to the map.
+namespace lilo::core::registration {
+
+/// Far from the solution one of so many features is used, and kernels are so many times as wide.
+/// 1: abrupt turns are lost.
+inline constexpr std::size_t kFarStride = 4;
+/// Metres: a step below which the solution is near; rotations count by kLever_m.
+inline constexpr double kNearStep_m = 0.03;
+/// Metres: a step below which the solver has converged.
+inline constexpr double kConvergedStep_m = 3e-3;
+/// Factor of a step near the solution. Weights and cells follow each step, so that the next one
+/// would be about a sixth of it.
+inline constexpr double kOverRelaxation = 1.2;
+/// Instants of a scan; each residual counts at the nearest one.
+inline constexpr int kResidualInstants = 32;
+
+/// Part of the information from the scan below which a direction is weak.
+inline constexpr double kWeakShare = 0.5;
+
+/// Of two alignments one fits as well with more than this part of the other's structure inliers.
+inline constexpr double kFitsAsWell = 0.95;
+/// The scan tells two places apart with more than so many times the information of its duration.
+inline constexpr double kTellsApart = 20.0;
+
+/// Weight of the newest scan in the usual fit.
+inline constexpr double kFitSmoothing = 0.3;
+/// Sigmas by which a fit must be worse than usual, or the difference may be chance.
+inline constexpr double kPoorFitSigmas = 3.0;
+/// Fit over the usual one, below which a better alignment may have been missed. A scan whose solver
+/// did not converge needs as much.
+inline constexpr double kDoubtfulFit = 0.5;
+/// The same ratio, which is found at any place.
+inline constexpr double kChanceFit = 0.25;
+
+}  // namespace lilo::core::registration
+
+/// Hypotheses of motion and place on the top-down grid.
+namespace lilo::core::search {
+
+/// Sigmas: to prefer a hypothesis.
+inline constexpr double kPreferSigmas = 2.0;
+/// Sigmas: to drop a hypothesis on a quarter of the points, a usual motion, or a session.
+inline constexpr double kDropSigmas = 3.0;
+/// Sigmas: to restart from another motion.
+inline constexpr double kRestartSigmas = 1.0;
+
+/// Cells of the grid in a metre: one is as wide as a trunk or a post with its blur.
+inline constexpr int kCellsPerMetre = 2;
+/// Cells: width of the grid, 256 m.
+inline constexpr std::int32_t kGridCells = 512;
+/// One of so many points is tried before all of them are.
+inline constexpr std::size_t kSubsample = 4;
+/// Attitudes of a scan in which the sensor may turn fast.
+inline constexpr std::size_t kTurnInstants = 16;
+
+/// What a vehicle may change of its motion in a bend, and unseen.
+inline constexpr double kMostAcceleration_mps2 = 4.0;
+inline constexpr double kMostYawRate_radps = 1.0;
+
+/// Scans of which a motion is judged.
+inline constexpr std::size_t kMotionScans = 6;
+/// m/s: step of the initial speed.
+inline constexpr double kSpeedStep_mps = 1.0;
+/// rad/m: yaw rate that moves what is 5 m away as far as 1 m/s does. One's step gives the other's.
+inline constexpr double kYawPerSpeed_radpm = 0.2;
+/// Steps of speed, up to 40 m/s; headings; and steps of yaw rate to either side, up to 2 rad/s.
+inline constexpr int kSpeeds = 40, kHeadings = 16, kYawRates = 10;
+/// Refinements, each of half the step.
+inline constexpr int kRefinements = 3;
+/// m/s, 1 sigma of a velocity that was searched.
+inline constexpr double kSearchedVelocity_mps = 1.0;
+/// m/s: motions nearer to each other count as one.
+inline constexpr double kSameMotion_mps = 3.0;
+
+/// m/s: how far off the motions are that are tested against the one tracked.
+inline constexpr std::array<double, 4> kFalseMotions_mps{1.0, 2.0, 3.0, 4.0};
+/// Scans in a row for which another motion must be better.
+inline constexpr int kRefutingScans = 2;
+
+/// Steps of a lost place. At 20 m a step of yaw moves things as far as a step along does.
+inline constexpr double kPlaceStep_m = 1.0, kYawStep_rad = 0.05;
+/// Steps at a time in the coarse search.
+inline constexpr int kCoarseSteps = 2;
+/// Cells by which the map is drawn thicker; kCoarseSteps times as much in the coarse search.
+inline constexpr int kMapAround = 1;
+/// Coarse hypotheses that are refined.
+inline constexpr std::size_t kRefinedPlaces = 12;
+/// Places from which the scan is aligned.
+inline constexpr std::size_t kMostPlaces = 3;
+/// Metres: places nearer to each other count as one.
+inline constexpr double kSamePlace_m = 1.5;
+inline constexpr double kSamePlace_rad = kSamePlace_m / motion::kLever_m;
+
+}  // namespace lilo::core::search
+
+/// Scan after scan: what is believed, and when a map is given up.
+namespace lilo::core::tracking {
+
+/// Features, and matches, without which a scan says too little.
+inline constexpr std::size_t kMinFeatures = 100;
+/// Metres: more than half of the structure is nearer in a room.
+inline constexpr float kRoom_m = 5.0F;
+/// Sigmas of the normalised innovation from which a motion is exceptional.
+inline constexpr double kExceptionalSigmas = 3.0;
+/// Least mean robust weight of an alignment. A good one has 0.7 and more.
+inline constexpr double kMinMeanWeight = 0.3;
+/// Scans in a row without an alignment that end a session.
+inline constexpr int kScansToGiveUp = 10;
+
+/// m/s, 1 sigma of a velocity near rest or near the tracked one. A motion farther off is another.
+inline constexpr double kSameVelocity_mps = 0.5;
+/// m/s: a change below which the initial motion is found.
+inline constexpr double kConvergedVelocity_mps = 0.01;
+/// Rounds in which it is refined, at most.
+inline constexpr int kRefiningRounds = 15;
+/// Part of the difference found that the first round goes, and the least of the others.
+inline constexpr double kFirstPart = 0.5, kLeastPart = 0.25;
+/// Scans after which a stationary start is checked again.
+inline constexpr std::size_t kScansToRecheck = 4;
+
+/// Keyframes of a young map, which may know too little.
+inline constexpr int kYoungMap = 5;
+/// Part of the features that a young map must match, or it gets another keyframe.
+inline constexpr double kMatchedEnough = 0.5;
+
+/// Radians: a turn that began within the scan.
+inline constexpr double kSuddenTurn_rad = 0.8;
+/// Radians: a turn that may have begun in the scan before, and the part of it before this one.
+inline constexpr double kEarlierTurn_rad = 1.2, kTurnedBefore_rad = 0.4;
+/// Metres, 1 sigma of a place that was searched; a turn in place ends no farther off.
+inline constexpr double kFoundPlace_m = 0.5;
+inline constexpr double kFoundPlace_rad = kFoundPlace_m / motion::kLever_m;
+/// Sum of robust weights of ground: structure leaves height and tilt open.
+inline constexpr double kMinGround = 0.5 * static_cast<double>(kMinFeatures);
+/// Metres from the prediction, within which an alignment is exactly there.
+inline constexpr double kInPlace_m = 0.2;
+
+/// Weight of the newest scan in the design effect.
+inline constexpr double kDesignEffectSmoothing = 0.1;
+/// Least design effect: a simulation without noise is no reason to be sure.
+inline constexpr double kLeastDesignEffect = 0.05;
+/// Scans that share the error of a cell.
+inline constexpr double kScansSharingErrors = 3.0;
+/// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
+inline constexpr double kMostlyTurns_m = 0.3;
+/// Keyframes that a scan sees of the map at most; the first counts as four of them.
+inline constexpr int kKeyframesInView = 13, kFirstKeyframe = 4;
+/// Part of an alignment's standard error that is the same at every keyframe.
+inline constexpr double kSteadyError = 0.5;
+/// 1 sigma of the path's scale: paths come out too short by up to so much of their length.
+inline constexpr double kPathScale = 3e-4;
+
+}  // namespace lilo::core::tracking
