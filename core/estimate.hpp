@@ -51,8 +51,11 @@ struct Estimate {
   /// that prediction joins poses of different counts.
   std::uint32_t restarts = 0;
 
-  int edge_count = 0, surface_count = 0, ground_count = 0;  ///< features used
-  int map_edge_count = 0, map_surface_count = 0;  ///< in the local map (default: before it)
+  int ground_count = 0;                   ///< features used
+  int structure_count = 0;                ///< features used (profile default)
+  int edge_count = 0, surface_count = 0;  ///< features used (profile paper)
+  int map_cell_count = 0;  ///< in the local map before the scan, of all sizes (default)
+  int map_edge_count = 0, map_surface_count = 0;  ///< points in the local map (paper)
   /// Points that would have made a new cell of a map that was full, since the odometry began. They
   /// were left out.
   std::uint64_t map_refused_count = 0;

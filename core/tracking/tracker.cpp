@@ -208,9 +208,9 @@ Estimate Tracker::estimate(const Scan& scan) const {
   // Before the initial motion is known, nothing is lost yet.
   const bool is_unknown = phase_ == Phase::starting && !initializer_.is_stationary();
   e.status = is_lost && is_unknown ? TrackingStatus::initializing : alignment_.status;
-  e.surface_count = static_cast<int>(scan_.structure);
-  e.ground_count = static_cast<int>(scan_.features->size()) - e.surface_count;
-  e.map_surface_count = cells.size();
+  e.structure_count = static_cast<int>(scan_.structure);
+  e.ground_count = static_cast<int>(scan_.features->size()) - e.structure_count;
+  e.map_cell_count = cells.size();
   e.map_refused_count = cells.refused();
   e.correspondence_count = solution.matched;
   e.iterations = solution.iterations;

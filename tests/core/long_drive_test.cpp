@@ -48,8 +48,8 @@ double resident_mb() {
 struct Cost {
   double features = 0.0, map_cells = 0.0, residuals = 0.0, steps = 0.0, memory_mb = 0.0;
   void add(const Estimate& e) {
-    features += static_cast<double>(e.ground_count + e.surface_count) / kTenth;
-    map_cells += static_cast<double>(e.map_surface_count) / kTenth;
+    features += static_cast<double>(e.ground_count + e.structure_count) / kTenth;
+    map_cells += static_cast<double>(e.map_cell_count) / kTenth;
     residuals += static_cast<double>(e.correspondence_count) / kTenth;
     steps += static_cast<double>(e.iterations) / kTenth;
     memory_mb += resident_mb() / kTenth;

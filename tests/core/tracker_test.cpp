@@ -95,7 +95,7 @@ TEST(DefaultProfile, CountsWhatAFullMapHasNoRoomFor) {
   for (std::uint64_t k = 0; k < 3; ++k) {
     const auto at = [k](double s) { return drive(0.1 * (static_cast<double>(k) + s), 6.0); };
     const Estimate e = odometry.process(test::scan_of(test::yard(), k16, 900, at, k));
-    EXPECT_LE(e.map_surface_count, 2 * (400 + 100));  // fine and coarse, of ground and structure
+    EXPECT_LE(e.map_cell_count, 2 * (400 + 100));  // fine and coarse, of ground and structure
     EXPECT_GE(e.map_refused_count, refused_before);
     refused_before = e.map_refused_count;
   }

@@ -22,9 +22,11 @@ struct Counter {
   std::vector<double> ProfileRun::*values;
 };
 
-constexpr std::array<Counter, 5> kCounters = {{{"edges", &ProfileRun::edges},
+constexpr std::array<Counter, 7> kCounters = {{{"edges", &ProfileRun::edges},
                                                {"surfaces", &ProfileRun::surfaces},
+                                               {"structure", &ProfileRun::structure},
                                                {"ground", &ProfileRun::ground},
+                                               {"map cells", &ProfileRun::map_cells},
                                                {"map edges", &ProfileRun::map_edges},
                                                {"map surfaces", &ProfileRun::map_surfaces}}};
 

@@ -26,7 +26,9 @@ void take(Odometry& odometry, const Scan& scan, ProfileRun& run) {
   run.timer.finish();
   run.edges.push_back(e.edge_count);
   run.surfaces.push_back(e.surface_count);
+  run.structure.push_back(e.structure_count);
   run.ground.push_back(e.ground_count);
+  run.map_cells.push_back(e.map_cell_count);
   run.map_edges.push_back(e.map_edge_count);
   run.map_surfaces.push_back(e.map_surface_count);
   ++run.status_counts[static_cast<std::size_t>(e.status)];

@@ -16,9 +16,9 @@ namespace lilo {
 /// One profile on one set.
 struct ProfileRun {
   StageTimer timer;  ///< of the odometry alone: its decode time is that of handing the scan over
-  std::vector<double> edges, surfaces, ground;   ///< features, a value a scan
-  std::vector<double> map_edges, map_surfaces;   ///< size of the map after every scan
-  std::array<std::uint64_t, 4> status_counts{};  ///< scans, by TrackingStatus
+  std::vector<double> edges, surfaces, structure, ground;  ///< features, a value a scan
+  std::vector<double> map_cells, map_edges, map_surfaces;  ///< size of the map, likewise
+  std::array<std::uint64_t, 4> status_counts{};            ///< scans, by TrackingStatus
   std::vector<StampedPose> poses;
   std::optional<SegmentError> drift;  ///< KITTI error; none without truth or on too short a path
   std::optional<double> ate_m;        ///< none without truth

@@ -25,7 +25,8 @@ double memory_mb(const std::string& name) {
 }
 
 void note_size(const Estimate& estimate, OdometryRun& run) {
-  run.map_size.push_back(estimate.map_edge_count + estimate.map_surface_count);
+  run.map_size.push_back(estimate.map_cell_count + estimate.map_edge_count +
+                         estimate.map_surface_count);
   run.correspondences.push_back(estimate.correspondence_count);
   run.iterations.push_back(estimate.iterations);
   run.rss_mb.push_back(memory_mb("VmRSS"));
