@@ -36,9 +36,9 @@ bool Initializer::must_begin_again(const ScanTiming& scan, std::size_t feature_c
   // Half of a revolution: packets were lost, or the recording began in the middle of it. Or the
   // sensor was covered.
   if (feature_count > 2 * scans_[0].feature_count) return true;
-  // Long ago: only a sensor at rest may be supposed to have gone on as it did.
+  // Long ago: only a stationary sensor may be supposed to have gone on as it did.
   const double unseen_s = std::abs(seconds_between(*state.end_ns, scan.start_ns));
-  return unseen_s > motion::kShortGap_s && (count_ == 1 || !is_stationary_);
+  return unseen_s > motion::kShortGap_s && (count_ == 1 || !assumes_stationary_);
 }
 
 bool Initializer::add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
@@ -54,7 +54,7 @@ bool Initializer::add(const Observation& scan, const std::vector<Feature>& all, 
   note_track(count_ - 1, prior.T_begin, predicted_end(prior));
   if (count_ <= 2) return false;
   const bool is_known =
-      is_stationary_ ? recheck_stationary(local) : recheck_moving(was_lost, local);
+      assumes_stationary_ ? recheck_stationary(local) : recheck_moving(was_lost, local);
   if (is_known) clear();
   return is_known;
 }
@@ -145,9 +145,9 @@ Solution Initializer::refine(Start& start, LocalOdometry& local) {
 
 Solution Initializer::align_second(bool may_be_stationary, LocalOdometry& local) {
   Start start = search();
-  is_stationary_ = is_unambiguous_ && !start.moves && may_be_stationary;
+  assumes_stationary_ = is_unambiguous_ && !start.moves && may_be_stationary;
   Solution solution = refine(start, local);
-  if (is_stationary_) local.assume_standing();
+  if (assumes_stationary_) local.assume_stationary();
   assumed_ = start.twist;
   return solution;
 }
@@ -180,8 +180,8 @@ Initializer::Start Initializer::best_start(const Twist& tracked, bool was_lost) 
   return {twist, twist.linear_mps, tracking::kSameVelocity_mps, true};
 }
 
-/// A sensor that was taken to stand may have crept, where a step of a scan is less than the scans
-/// can tell: a map so begun is smeared by it, and holds the sensor back later.
+/// A sensor that was assumed stationary may have crept, where a step of a scan is less than the
+/// scans can tell: a map so begun is smeared by it, and holds the sensor back later.
 bool Initializer::recheck_stationary(LocalOdometry& local) {
   if (count_ < tracking::kScansToRecheck) return false;
   const Twist tracked = tracked_twist();

@@ -32,8 +32,8 @@ class Initializer {
 
   /// Scans remembered, the newest included. 0 before the first and when the motion is known.
   [[nodiscard]] std::size_t scans() const { return count_; }
-  /// Found to be stationary, which is believed at once.
-  [[nodiscard]] bool is_stationary() const { return is_stationary_; }
+  /// Whether the sensor is assumed stationary since the second scan, which is believed at once.
+  [[nodiscard]] bool assumes_stationary() const { return assumes_stationary_; }
 
   /// Whether the scans remembered are no basis for this next one: it saw far more than the first,
   /// which was a fragment, or it comes too late.
@@ -47,8 +47,8 @@ class Initializer {
   /// forgotten, and this one can be aligned like any other.
   bool add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
            LocalOdometry& local);
-  /// Aligns the second scan, after add(). `may_be_stationary`: believe a standstill at once, as
-  /// where the sensor was just switched on.
+  /// Aligns the second scan, after add(). `may_be_stationary`: the sensor may be assumed
+  /// stationary, as one that was just switched on.
   Solution align_second(bool may_be_stationary, LocalOdometry& local);
   /// Where the newest scan was tracked.
   void set_track(const Pose& T_begin, const Pose& T_end);
@@ -85,7 +85,7 @@ class Initializer {
   std::size_t count_ = 0;
   MotionSearch search_;
   bool is_unambiguous_ = false;  // no other motion fits nearly as well
-  bool is_stationary_ = false;
+  bool assumes_stationary_ = false;
   Twist assumed_;  // by the second scan
 };
 

@@ -44,12 +44,12 @@ Solution LocalOdometry::align_moving(const std::vector<Feature>& features, const
   return is_significant(found.inliers, usual.inliers, search::kDropSigmas) ? found : usual;
 }
 
-Solution LocalOdometry::align_moving_or_standing(const std::vector<Feature>& features,
-                                                 const Prior& prior, std::size_t finest_level) {
+Solution LocalOdometry::align_moving_or_stationary(const std::vector<Feature>& features,
+                                                   const Prior& prior, std::size_t finest_level) {
   Solution moving = align_moving(features, prior, finest_level);
-  if (!standing_.is_likely()) return moving;
-  Solution standing = align(features, standing_.hypothesis(prior), finest_level);
-  return fits_as_well(standing, moving) && tells_apart(standing, moving) ? standing : moving;
+  if (!stationary_.is_stationary()) return moving;
+  Solution stationary = align(features, stationary_.hypothesis(prior), finest_level);
+  return fits_as_well(stationary, moving) && tells_apart(stationary, moving) ? stationary : moving;
 }
 
 void LocalOdometry::accept(const ScanTiming& scan, const Solution& solution) {
@@ -93,7 +93,7 @@ Pose LocalOdometry::begin_map(const ScanTiming& first) {
   Pose at = predicted_end(predict(first));
   uncertainty_.begin_map(state_);
   process_noise_.interrupt();
-  standing_.end();
+  stationary_.reset();
   state_ = {};
   map_.clear();
   return at;
@@ -102,7 +102,7 @@ Pose LocalOdometry::begin_map(const ScanTiming& first) {
 void LocalOdometry::rewind(const ScanTiming& first) {
   uncertainty_.rewind();
   process_noise_.interrupt();
-  standing_.end();
+  stationary_.reset();
   state_ = {};
   state_.end_ns = first.end_ns;
 }

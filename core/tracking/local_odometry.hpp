@@ -3,7 +3,7 @@
 
 #include "core/motion/motion_state.hpp"
 #include "core/motion/process_noise.hpp"
-#include "core/motion/standing.hpp"
+#include "core/motion/stationary_detector.hpp"
 #include "core/odometry_config.hpp"
 #include "core/registration/solver.hpp"
 #include "core/registration/weak_directions.hpp"
@@ -38,9 +38,10 @@ class LocalOdometry {
                  std::size_t finest_level = LocalMaps::kUsual) {
     return solver_.solve(features, map_.cells(), prior, finest_level);
   }
-  /// The same, and where the sensor seems to stand, also from where it stood: the better one.
-  Solution align_moving_or_standing(const std::vector<Feature>& features, const Prior& prior,
-                                    std::size_t finest_level);
+  /// The same. Where the sensor is stationary, the scan is also aligned from that place, and the
+  /// better alignment is taken.
+  Solution align_moving_or_stationary(const std::vector<Feature>& features, const Prior& prior,
+                                      std::size_t finest_level);
   /// The prediction as a solution of which nothing matched.
   [[nodiscard]] Solution unaligned(const Prior& prior) const { return solver_.unaligned(prior); }
 
@@ -51,11 +52,11 @@ class LocalOdometry {
   /// The first scan of a map: its last firing is the origin.
   void accept_first(const ScanTiming& scan) { state_.end_ns = scan.end_ns; }
 
-  /// Learns from the motion just accepted whether the sensor stands.
-  void observe_standing() { standing_.observe(state_.T_odom_sensor, state_.twist); }
-  [[nodiscard]] bool is_standing() const { return standing_.is_likely(); }
-  /// It is taken to stand where it is.
-  void assume_standing() { standing_.begin(state_.T_odom_sensor); }
+  /// Learns from the motion just accepted whether the sensor is stationary.
+  void observe_stationary() { stationary_.observe(state_.T_odom_sensor, state_.twist); }
+  [[nodiscard]] bool is_stationary() const { return stationary_.is_stationary(); }
+  /// The sensor is assumed to be stationary where it is.
+  void assume_stationary() { stationary_.assume(state_.T_odom_sensor); }
   /// Finds what a scan that was accepted told too little of: there the motion is dead reckoned, and
   /// the pose the less certain.
   WeakDirections find_weak_directions(const ScanTiming& scan, const Solution& solution);
@@ -90,7 +91,7 @@ class LocalOdometry {
   KeyframeMap map_;
   ProcessNoise process_noise_;
   PoseUncertainty uncertainty_;
-  Standing standing_;
+  StationaryDetector stationary_;
   MotionState state_;
   int least_segments_;
 };

@@ -85,13 +85,14 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
 
 /// None where the map can be of no more use.
 std::optional<Solution> Tracker::solve(const Prior& prior) {
-  // Who was switched on mostly stands; where a map was given up, more scans must tell.
+  // A sensor that was just switched on is mostly stationary. After a map was given up, more scans
+  // must tell.
   if (initializer_.scans() == 2) return initializer_.align_second(session_.restarts == 0, local_);
   if (phase_ == Phase::lost && scan_.says_enough()) {
     return relocalize(local_.align(*scan_.features, prior, scan_.finest_level), prior);
   }
   const Solution found =
-      local_.align_moving_or_standing(*scan_.features, prior, scan_.finest_level);
+      local_.align_moving_or_stationary(*scan_.features, prior, scan_.finest_level);
   if (phase_ == Phase::starting) return found;
   return relocalizer_.follow_turn(found, scan_, prior, last_, local_);
 }
@@ -105,7 +106,7 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
     return is_in_place(solution, prior, last_.fit.relative(solution, scan_.structure));
   };
   const bool is_searchable = last_.unseen_s(scan_.timing) <= motion::kLongestGap_s;
-  if (!is_searchable && !local_.is_standing() && !is_predicted(at_prediction)) {
+  if (!is_searchable && !local_.is_stationary() && !is_predicted(at_prediction)) {
     return std::nullopt;
   }
   const std::optional<Solution> found =
@@ -133,7 +134,7 @@ Tracker::Alignment Tracker::judge(const Solution& solution) const {
     return a;
   }
   a.is_explained = is_explained(solution, fit);
-  if (phase_ == Phase::starting && !initializer_.is_stationary()) return a;  // or so it may be
+  if (phase_ == Phase::starting && !initializer_.assumes_stationary()) return a;  // or so it may be
   const bool is_sure = scan_.is_complete && solution.converged && fit > registration::kDoubtfulFit;
   a.status = is_sure ? TrackingStatus::tracking : TrackingStatus::degraded;
   return a;
@@ -165,7 +166,7 @@ void Tracker::accept(const Prior& prior) {
       initializer_.set_track(solution.trajectory.at(0.0), local_.state().T_odom_sensor);
     }
   }
-  if (!is_lost) local_.observe_standing();
+  if (!is_lost) local_.observe_stationary();
 }
 
 /// Whether the map led the sensor astray: another motion explains the last scans better.
@@ -206,7 +207,7 @@ Estimate Tracker::estimate(const Scan& scan) const {
   e.T_odom_sensor = session_.T_odom_start * local_.state().T_odom_sensor;
   e.twist = local_.state().twist;
   // Before the initial motion is known, nothing is lost yet.
-  const bool is_unknown = phase_ == Phase::starting && !initializer_.is_stationary();
+  const bool is_unknown = phase_ == Phase::starting && !initializer_.assumes_stationary();
   e.status = is_lost && is_unknown ? TrackingStatus::initializing : alignment_.status;
   e.structure_count = static_cast<int>(scan_.structure);
   e.ground_count = static_cast<int>(scan_.features->size()) - e.structure_count;

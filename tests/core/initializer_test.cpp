@@ -55,7 +55,7 @@ TEST(Initializer, FindsTheMotionOfTwoScans) {
     const MotionState& state = start.local.state();
     EXPECT_NEAR(state.twist.linear_mps.x(), speed_mps, 0.2);
     EXPECT_NEAR(state.T_odom_sensor.translation_m.x(), 0.1 * speed_mps, 0.03);
-    EXPECT_EQ(start.initializer.is_stationary(), speed_mps < 5.0) << "0.3 m tell too little";
+    EXPECT_EQ(start.initializer.assumes_stationary(), speed_mps < 5.0) << "0.3 m tell too little";
   }
 }
 
@@ -80,7 +80,7 @@ TEST(Initializer, BelievesAStandstillAtOnceAndForgetsTheScansLater) {
     EXPECT_FALSE(start.take(test::yard(), test::along_x(0.0, k)));
     EXPECT_EQ(start.initializer.scans(), k + 1);
   }
-  EXPECT_TRUE(start.initializer.is_stationary());
+  EXPECT_TRUE(start.initializer.assumes_stationary());
   EXPECT_TRUE(start.take(test::yard(), test::along_x(0.0, 3)));
   EXPECT_EQ(start.initializer.scans(), 0U);
 }

@@ -171,17 +171,17 @@ TEST_F(LocalOdometryTest, AWeakDirectionMakesThePoseUncertainAlongIt) {
 TEST_F(LocalOdometryTest, ASensorThatIsTakenToStandIsFollowedWhenItSetsOff) {
   const auto x_m = [](double t_s) { return std::pow(std::max(0.0, t_s - 1.0), 2.0); };
   begin_in_yard(0.0);
-  local_.assume_standing();
+  local_.assume_stationary();
   for (std::uint64_t k = 1; k <= 20; ++k) {
     const double begin_s = kSpan_s * static_cast<double>(k);
     const auto path = [&](double s) {
       return Pose{kAhead, {x_m(begin_s + s * kSpan_s), 0.0, 0.0}};
     };
     const test::ObservedScan scan(test::yard(), path, k);
-    const Solution solution = local_.align_moving_or_standing(
+    const Solution solution = local_.align_moving_or_stationary(
         scan.features(), local_.predict(scan.timing()), LocalMaps::kUsual);
     local_.accept(scan.timing(), solution);
-    local_.observe_standing();
+    local_.observe_stationary();
     local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kUsual}, scan.features(),
                     solution, MapUse::keyframe);
     const Eigen::Vector3d error_m =

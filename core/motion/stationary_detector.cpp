@@ -1,33 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/motion/standing.hpp"
+#include "core/motion/stationary_detector.hpp"
 
 #include "core/constants.hpp"
 
 namespace lilo::core {
 
-void Standing::begin(const Pose& T_odom_sensor) {
+void StationaryDetector::assume(const Pose& T_odom_sensor) {
   T_odom_sensor_ = T_odom_sensor;
-  stands_ = true;
+  is_stationary_ = true;
 }
 
-void Standing::end() {
-  stands_ = false;
-  still_scans_ = 0;
+void StationaryDetector::reset() {
+  is_stationary_ = false;
+  slow_scans_ = 0;
 }
 
-void Standing::observe(const Pose& T_odom_sensor, const Twist& twist) {
-  if (stands_) {
+void StationaryDetector::observe(const Pose& T_odom_sensor, const Twist& twist) {
+  if (is_stationary_) {
     if ((T_odom_sensor.translation_m - T_odom_sensor_.translation_m).norm() > motion::kSetOff_m)
-      end();
+      reset();
     return;
   }
-  const bool still = twist.linear_mps.norm() < motion::kStationary_mps &&
-                     twist.angular_radps.norm() < motion::kStationary_radps;
-  still_scans_ = still ? still_scans_ + 1 : 0;
-  if (still_scans_ >= motion::kStationaryScans) begin(T_odom_sensor);
+  const bool slow = twist.linear_mps.norm() < motion::kStationary_mps &&
+                    twist.angular_radps.norm() < motion::kStationary_radps;
+  slow_scans_ = slow ? slow_scans_ + 1 : 0;
+  if (slow_scans_ >= motion::kStationaryScans) assume(T_odom_sensor);
 }
 
-Prior Standing::hypothesis(Prior prior) const {
+Prior StationaryDetector::hypothesis(Prior prior) const {
   constexpr int kTranslation = 3, kVelocity = 9;  // of a knot: rotation, translation, rates of both
   prior.T_begin.translation_m = T_odom_sensor_.translation_m;
   prior.twist.linear_mps.setZero();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When a sensor is supposed to stand, and when a scan may say so.
-#include "core/motion/standing.hpp"
+// When a sensor is stationary, and when a scan may say so.
+#include "core/motion/stationary_detector.hpp"
 
 #include "core/odometry.hpp"
 #include "core/registration/comparison.hpp"
@@ -14,38 +14,38 @@
 namespace lilo::core {
 namespace {
 
-TEST(Standing, IsSupposedAfterFiveScansWithoutMotionAndUntilTheSensorIsAway) {
-  Standing standing;
+TEST(StationaryDetector, IsSupposedAfterFiveScansWithoutMotionAndUntilTheSensorIsAway) {
+  StationaryDetector detector;
   const Twist slow{{0.05, 0.0, 0.0}, {0.0, 0.0, 0.0}};
   for (int scan = 0; scan < 5; ++scan) {
-    EXPECT_FALSE(standing.is_likely());
-    standing.observe({}, slow);
+    EXPECT_FALSE(detector.is_stationary());
+    detector.observe({}, slow);
   }
-  EXPECT_TRUE(standing.is_likely());
-  standing.observe({Eigen::Quaterniond::Identity(), {0.09, 0.0, 0.0}}, slow);
-  EXPECT_TRUE(standing.is_likely());
-  standing.observe({Eigen::Quaterniond::Identity(), {0.11, 0.0, 0.0}}, slow);
-  EXPECT_FALSE(standing.is_likely());
+  EXPECT_TRUE(detector.is_stationary());
+  detector.observe({Eigen::Quaterniond::Identity(), {0.09, 0.0, 0.0}}, slow);
+  EXPECT_TRUE(detector.is_stationary());
+  detector.observe({Eigen::Quaterniond::Identity(), {0.11, 0.0, 0.0}}, slow);
+  EXPECT_FALSE(detector.is_stationary());
 }
 
-TEST(Standing, AMotionInBetweenCountsAnew) {
-  Standing standing;
+TEST(StationaryDetector, AMotionInBetweenCountsAnew) {
+  StationaryDetector detector;
   const Twist slow, fast{{0.2, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-  for (int scan = 0; scan < 4; ++scan) standing.observe({}, slow);
-  standing.observe({}, fast);
-  for (int scan = 0; scan < 4; ++scan) standing.observe({}, slow);
-  EXPECT_FALSE(standing.is_likely());
+  for (int scan = 0; scan < 4; ++scan) detector.observe({}, slow);
+  detector.observe({}, fast);
+  for (int scan = 0; scan < 4; ++scan) detector.observe({}, slow);
+  EXPECT_FALSE(detector.is_stationary());
 }
 
-TEST(Standing, TheHypothesisIsThePlaceWithoutSpeedAndKeepsWhatIsKnownOfRotation) {
-  Standing standing;
+TEST(StationaryDetector, TheHypothesisIsThePlaceWithoutSpeedAndKeepsWhatIsKnownOfRotation) {
+  StationaryDetector detector;
   const Eigen::Vector3d place_m(3.0, -2.0, 0.5);
-  standing.begin({Eigen::Quaterniond::Identity(), place_m});
+  detector.assume({Eigen::Quaterniond::Identity(), place_m});
   Prior prior;
   prior.T_begin.translation_m = place_m + Eigen::Vector3d(0.04, 0.0, 0.0);
   prior.twist = {{0.4, 0.0, 0.0}, {0.0, 0.0, 0.2}};
   prior.begin_information *= 7.0;
-  const Prior still = standing.hypothesis(prior);
+  const Prior still = detector.hypothesis(prior);
   EXPECT_EQ(still.T_begin.translation_m, place_m);
   EXPECT_TRUE(still.twist.linear_mps.isZero());
   EXPECT_EQ(still.twist.angular_radps, prior.twist.angular_radps);
