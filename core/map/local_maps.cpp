@@ -55,8 +55,7 @@ void LocalMaps::end_keyframe() {
 
 void LocalMaps::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
   for (std::size_t level = 0; level < kLevels; ++level) {
-    const double within_m =
-        level == kNarrow ? std::min(radius_m, map::kHalfCellRadius_m) : radius_m;
+    const double within_m = level == kHalf ? std::min(radius_m, map::kHalfCellRadius_m) : radius_m;
     for (CellMap& map : levels_[level]) map.forget_beyond(center_m, within_m);
   }
 }

@@ -24,7 +24,7 @@ class LocalMaps {
   /// (rooms, stairs, the inside of a garage): over three whole ones walls, doors and furniture blur
   /// into one another.
   static constexpr std::size_t kLevels = 3;
-  static constexpr std::size_t kNarrow = 0, kUsual = 1, kCoarse = 2;
+  static constexpr std::size_t kHalf = 0, kWhole = 1, kCoarse = 2;
   using PerLevel = std::array<std::int32_t, kLevels>;
   static constexpr PerLevel kNoCells{CellMap::kNone, CellMap::kNone, CellMap::kNone};
 
@@ -57,7 +57,7 @@ class LocalMaps {
   /// The mean of every cell of the usual size (m, odometry frame), in no particular order.
   template <typename Visit>
   void for_each_mean(const Visit& visit) const {
-    for (const CellMap& map : levels_[kUsual]) map.for_each_mean(visit);
+    for (const CellMap& map : levels_[kWhole]) map.for_each_mean(visit);
   }
 
  private:

@@ -17,8 +17,8 @@ void StationaryDetector::reset() {
 
 void StationaryDetector::observe(const Pose& T_odom_sensor, const Twist& twist) {
   if (is_stationary_) {
-    if ((T_odom_sensor.translation_m - T_odom_sensor_.translation_m).norm() > motion::kSetOff_m)
-      reset();
+    const Eigen::Vector3d moved_m = T_odom_sensor.translation_m - T_odom_sensor_.translation_m;
+    if (moved_m.norm() > motion::kSetOff_m) reset();
     return;
   }
   const bool slow = twist.linear_mps.norm() < motion::kStationary_mps &&

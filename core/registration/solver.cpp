@@ -194,7 +194,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   const Eigen::Index n = solution.trajectory.knots.rows();
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
-    accumulate(features, stride, maps, stride == 1 ? finest : LocalMaps::kUsual, solution);
+    accumulate(features, stride, maps, stride == 1 ? finest : LocalMaps::kWhole, solution);
     Equations data = data_equations(prior, solution.data_information);
     const Unknowns x = solution.trajectory.knots;
     auto& [H, b] = data;

@@ -59,7 +59,7 @@ class Solver {
   [[nodiscard]] Solution unaligned(const Prior& prior) const;
   /// `finest`: level of the maps to begin with once the solution is near.
   Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
-                 std::size_t finest = LocalMaps::kUsual);
+                 std::size_t finest = LocalMaps::kWhole);
 
  private:
   static constexpr std::size_t kAtATime = 32;

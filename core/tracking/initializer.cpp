@@ -47,7 +47,7 @@ bool Initializer::add(const Observation& scan, const std::vector<Feature>& all, 
   one.finest_level = scan.finest_level;
   one.timing = scan.timing;
   one.feature_count = all.size();
-  thin_out(all, most_for_map_, Evenly::in_image, one.for_map, scan.is_narrow);
+  thin_out(all, most_for_map_, Evenly::in_image, one.for_map, scan.is_room);
   one.selected.assign(scan.features->begin(), scan.features->end());
   search_.add(scan.timing, *scan.features);
   const Prior prior = local.predict(scan.timing);
@@ -164,7 +164,7 @@ void Initializer::replay(Start start, LocalOdometry& local) {
     local.accept(scans_[k].timing, solution);
     note_track(k, solution.trajectory.at(0.0), solution.trajectory.end());
     const Observation scan{.timing = scans_[k].timing,
-                           .is_narrow = true,  // outside rooms, for_map has nothing overhead
+                           .is_room = true,  // outside rooms, for_map has nothing overhead
                            .finest_level = scans_[k].finest_level};
     local.grow_map(scan, scans_[k].for_map, solution, MapUse::keyframe);
   }

@@ -58,7 +58,7 @@ class Initializer {
     ScanTiming timing;
     std::size_t feature_count = 0;  ///< before selection
     std::vector<Feature> for_map, selected;
-    std::size_t finest_level = LocalMaps::kUsual;  ///< of the map
+    std::size_t finest_level = LocalMaps::kWhole;  ///< of the map
   };
   /// A motion the sensor may have, and what is believed of its speed along the ground.
   struct Start {

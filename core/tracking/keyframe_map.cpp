@@ -80,9 +80,8 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
 bool KeyframeMap::is_due(const AlignedScan& scan) const {
   if (keyframes_ == 0) return true;
   const Solution& solution = scan.solution;
-  if (keyframes_ < tracking::kYoungMap &&
-      solution.matched < tracking::kMatchedEnough * solution.looked_up)
-    return true;
+  const bool matched_enough = solution.matched >= tracking::kMatchedEnough * solution.looked_up;
+  if (keyframes_ < tracking::kYoungMap && !matched_enough) return true;
   const Pose moved_by = T_odom_keyframe_.inverse() * scan.T_odom_sensor;
   return moved_by.translation_m.norm() >= config_.keyframe_m ||
          so3_log(moved_by.rotation).norm() >= config_.keyframe_rad;

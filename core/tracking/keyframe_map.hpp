@@ -28,7 +28,7 @@ struct AlignedScan {
   const Solution& solution;
   Pose T_odom_sensor;  ///< of its last firing
   MapUse use = MapUse::keyframe;
-  std::size_t finest_level = LocalMaps::kUsual;  ///< of the map, for its surroundings
+  std::size_t finest_level = LocalMaps::kWhole;  ///< of the map, for its surroundings
   bool with_overhead = true;                     ///< what is_overhead() enters the map as well
 };
 
@@ -63,7 +63,7 @@ class KeyframeMap {
     std::vector<Feature> features;
     Trajectory trajectory;
     std::int64_t end_ns = 0;
-    std::size_t finest_level = LocalMaps::kUsual;
+    std::size_t finest_level = LocalMaps::kWhole;
     bool is_waiting = false;
   };
   [[nodiscard]] bool is_due(const AlignedScan& scan) const;

@@ -84,7 +84,7 @@ void LocalOdometry::observe_noise(const ScanTiming& scan, const Solution& soluti
 void LocalOdometry::grow_map(const Observation& scan, const std::vector<Feature>& features,
                              const Solution& solution, MapUse use) {
   if (map_.grow({scan.timing, features, solution, state_.T_odom_sensor, use, scan.finest_level,
-                 scan.is_narrow})) {
+                 scan.is_room})) {
     uncertainty_.add_keyframe(state_, map_.keyframes());
   }
 }

@@ -35,7 +35,7 @@ class LocalOdometry {
   }
   /// `finest_level`: of the map, once the solution is near.
   Solution align(const std::vector<Feature>& features, const Prior& prior,
-                 std::size_t finest_level = LocalMaps::kUsual) {
+                 std::size_t finest_level = LocalMaps::kWhole) {
     return solver_.solve(features, map_.cells(), prior, finest_level);
   }
   /// The same. Where the sensor is stationary, the scan is also aligned from that place, and the

@@ -10,7 +10,7 @@ namespace lilo::core {
 namespace {
 
 /// More than half of the structure is near, as in rooms.
-bool is_narrow(const std::vector<Feature>& features) {
+bool is_room(const std::vector<Feature>& features) {
   int near = 0, all = 0;
   for (const Feature& f : features) {
     if (f.kind == FeatureKind::ground) continue;
@@ -27,12 +27,12 @@ Observation observe(const Scan& scan, const std::vector<Feature>& selected) {
   const auto structure = std::count_if(selected.begin(), selected.end(), [](const Feature& f) {
     return f.kind == FeatureKind::structure;
   });
-  const bool narrow = is_narrow(selected);
+  const bool in_room = is_room(selected);
   return {.timing = {scan.start_ns, scan.end_ns, scan.motion_compensated},
           .features = &selected,
           .structure = static_cast<double>(structure),
-          .is_narrow = narrow,
-          .finest_level = narrow ? LocalMaps::kNarrow : LocalMaps::kUsual,
+          .is_room = in_room,
+          .finest_level = in_room ? LocalMaps::kHalf : LocalMaps::kWhole,
           .is_complete = scan.complete};
 }
 

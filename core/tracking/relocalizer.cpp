@@ -62,17 +62,17 @@ bool is_in_place(const Solution& found, const Prior& prior, double relative_fit)
              0;
 }
 
-void Relocalizer::draw_map(const LastAlignment& last, const Eigen::Vector3d& center_m,
+void Relocalizer::draw_map(const AlignmentHistory& history, const Eigen::Vector3d& center_m,
                            const LocalOdometry& local) {
-  if (map_end_ns_ == last.end_ns) return;
+  if (map_end_ns_ == history.end_ns) return;
   search_.set_map(local.map().cells().at(LocalMaps::kCoarse, FeatureKind::structure), center_m);
-  map_end_ns_ = last.end_ns;
+  map_end_ns_ = history.end_ns;
 }
 
 std::optional<Solution> Relocalizer::find(const Observation& scan, const Prior& prior,
-                                          const Solution& at_prediction, const LastAlignment& last,
-                                          LocalOdometry& local) {
-  attempt_all(scan, prior, at_prediction, last, local);
+                                          const Solution& at_prediction,
+                                          const AlignmentHistory& history, LocalOdometry& local) {
+  attempt_all(scan, prior, at_prediction, history, local);
   const auto all = attempts();
   Solution& best = *std::max_element(all.begin(), all.end(), fits_less);
   if (!is_unambiguous(best)) return std::nullopt;
@@ -81,20 +81,20 @@ std::optional<Solution> Relocalizer::find(const Observation& scan, const Prior& 
   }
   const bool is_found = best.converged &&
                         best.inliers - best.structure_inliers > tracking::kMinGround &&
-                        last.fit.relative(best, scan.structure) > registration::kDoubtfulFit;
+                        history.fit.relative(best, scan.structure) > registration::kDoubtfulFit;
   return is_found ? std::optional(best) : std::nullopt;
 }
 
 /// From where the scan was predicted to be, and from the likeliest places within reach of it.
 void Relocalizer::attempt_all(const Observation& scan, const Prior& prior,
-                              const Solution& at_prediction, const LastAlignment& last,
+                              const Solution& at_prediction, const AlignmentHistory& history,
                               LocalOdometry& local) {
   const Trajectory predicted = local.unaligned(prior).trajectory;
   const Pose T_end = predicted.end();
-  const double time_s = last.unseen_s(scan.timing) + scan.timing.span_s();
+  const double time_s = history.unseen_s(scan.timing) + scan.timing.span_s();
   const SearchRadius radius{0.5 * search::kMostAcceleration_mps2 * time_s * time_s,
                             search::kMostYawRate_radps * time_s, 0.0};
-  draw_map(last, T_end.translation_m, local);
+  draw_map(history, T_end.translation_m, local);
   attempts_[0] = at_prediction;
   attempt_count_ = 1;
   for (const Displacement& by : search_.find(*scan.features, predicted, radius)) {
@@ -119,29 +119,30 @@ bool Relocalizer::is_unambiguous(const Solution& best) const {
 }
 
 Solution Relocalizer::follow_turn(const Solution& found, const Observation& scan,
-                                  const Prior& prior, const LastAlignment& last,
+                                  const Prior& prior, const AlignmentHistory& history,
                                   LocalOdometry& local) {
-  if (last.fit.relative(found, scan.structure) > registration::kDoubtfulFit) return found;
+  if (history.fit.relative(found, scan.structure) > registration::kDoubtfulFit) return found;
+  const SearchRadius within_scan{.yaw_rad = tracking::kSuddenTurn_rad};
+  const SearchRadius since_last{.yaw_rad = tracking::kEarlierTurn_rad,
+                                .begin_yaw_rad = tracking::kTurnedBefore_rad};
   std::optional<Solution> turned;
-  if (!last.is_doubtful)
-    turned = better_turned(found, scan, prior, last, {.yaw_rad = tracking::kSuddenTurn_rad}, local);
+  if (!history.is_doubtful) {
+    turned = better_turned(found, scan, prior, history, within_scan, local);
+  }
   // A turn that began at the very end of the last scan left that one fitting well.
-  if (!turned)
-    turned = better_turned(
-        found, scan, prior, last,
-        {.yaw_rad = tracking::kEarlierTurn_rad, .begin_yaw_rad = tracking::kTurnedBefore_rad},
-        local);
+  if (!turned) turned = better_turned(found, scan, prior, history, since_last, local);
   return turned.value_or(found);
 }
 
 /// The best alignment from the likeliest turns, where significantly more fits than in `found`. One
 /// that left the place in which it was searched is of another motion, which nothing suggests.
 std::optional<Solution> Relocalizer::better_turned(const Solution& found, const Observation& scan,
-                                                   const Prior& prior, const LastAlignment& last,
+                                                   const Prior& prior,
+                                                   const AlignmentHistory& history,
                                                    const SearchRadius& radius,
                                                    LocalOdometry& local) {
   const Trajectory predicted = local.unaligned(prior).trajectory;
-  draw_map(last, predicted.end().translation_m, local);
+  draw_map(history, predicted.end().translation_m, local);
   const bool may_begin_elsewhere = radius.begin_yaw_rad > 0.0;
   const Eigen::Vector3d place_m = predicted.end().translation_m;
   Solution best = found;
@@ -153,7 +154,7 @@ std::optional<Solution> Relocalizer::better_turned(const Solution& found, const 
     if (departed_m < tracking::kFoundPlace_m && fits_less(best, other)) best = other;
   }
   const bool is_better = fits_significantly_better(best, found) &&
-                         is_explained(best, last.fit.relative(best, scan.structure));
+                         is_explained(best, history.fit.relative(best, scan.structure));
   return is_better ? std::optional(best) : std::nullopt;
 }
 

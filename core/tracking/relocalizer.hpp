@@ -15,11 +15,11 @@
 
 namespace lilo::core {
 
-/// What is known when the sensor has to be found in the map.
-struct LastAlignment {
+/// What the alignments up to now tell of the next one.
+struct AlignmentHistory {
   std::int64_t end_ns = 0;   ///< last firing of the last scan that was aligned
-  bool is_doubtful = false;  ///< the last scan fitted much less than usual
-  StructureFit fit;
+  bool is_doubtful = false;  ///< the last scan, aligned or not, fitted much less than usual
+  StructureFit fit;          ///< the usual fit
 
   /// From the last aligned scan to the beginning of this one. A clock that was set back says as
   /// little as one that was set forward.
@@ -44,22 +44,22 @@ class Relocalizer {
   /// The best alignment within reach of the prediction; none where no place is clearly the best.
   /// `at_prediction`: the alignment from the prediction itself.
   std::optional<Solution> find(const Observation& scan, const Prior& prior,
-                               const Solution& at_prediction, const LastAlignment& last,
+                               const Solution& at_prediction, const AlignmentHistory& history,
                                LocalOdometry& local);
 
   /// Where `found`, the alignment from the prediction, fits far worse than usual, the sensor may
   /// have begun to turn faster than it can follow: turns within the scan are searched, then those
   /// that began within the last one, and taken where significantly more fits.
   Solution follow_turn(const Solution& found, const Observation& scan, const Prior& prior,
-                       const LastAlignment& last, LocalOdometry& local);
+                       const AlignmentHistory& history, LocalOdometry& local);
 
  private:
-  void draw_map(const LastAlignment& last, const Eigen::Vector3d& center_m,
+  void draw_map(const AlignmentHistory& history, const Eigen::Vector3d& center_m,
                 const LocalOdometry& local);
   void attempt_all(const Observation& scan, const Prior& prior, const Solution& at_prediction,
-                   const LastAlignment& last, LocalOdometry& local);
+                   const AlignmentHistory& history, LocalOdometry& local);
   std::optional<Solution> better_turned(const Solution& found, const Observation& scan,
-                                        const Prior& prior, const LastAlignment& last,
+                                        const Prior& prior, const AlignmentHistory& history,
                                         const SearchRadius& radius, LocalOdometry& local);
   [[nodiscard]] bool is_unambiguous(const Solution& best) const;
   [[nodiscard]] std::span<Solution> attempts() {
@@ -67,7 +67,7 @@ class Relocalizer {
   }
 
   DisplacementSearch search_;
-  std::int64_t map_end_ns_ = 0;  // LastAlignment::end_ns when the search was given the map
+  std::int64_t map_end_ns_ = 0;  // AlignmentHistory::end_ns when the search was given the map
   std::array<Solution, search::kMostPlaces + 1> attempts_;
   std::size_t attempt_count_ = 0;
 };

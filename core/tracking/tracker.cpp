@@ -22,10 +22,10 @@ Tracker::Tracker(const OdometryConfig& config)
 Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, StageHook hook) {
   // In rooms little of the floor is seen: ceilings hold height and attitude as well. Elsewhere what
   // is overhead are canopies.
-  scan_ = observe(scan, selection_.choose(features, scan_.is_narrow));
+  scan_ = observe(scan, selection_.choose(features, scan_.is_room));
   // Half cells may inform along a direction that is weak with whole ones: they tell the lamps of a
   // tunnel from its lining.
-  if (alignment_.weak.count > 0) scan_.finest_level = LocalMaps::kNarrow;
+  if (alignment_.weak.count > 0) scan_.finest_level = LocalMaps::kHalf;
   hook(Stage::filter);
   if (session_.is_over) begin_session();
   Prior prior = begin_scan(features);
@@ -67,7 +67,7 @@ void Tracker::begin_map() {
   session_ = {.T_odom_start = session_.T_odom_start * local_.begin_map(scan_.timing),
               .restarts = session_.restarts};
   initializer_.clear();
-  last_.fit = {};
+  history_.fit = {};
   phase_ = Phase::starting;
 }
 
@@ -79,7 +79,7 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
     const bool is_known = initializer_.add(scan_, features, was_lost, local_);
     if (!is_known) return local_.predict(scan_.timing);
   }
-  phase_ = last_.unseen_s(scan_.timing) > motion::kShortGap_s ? Phase::lost : Phase::tracking;
+  phase_ = history_.unseen_s(scan_.timing) > motion::kShortGap_s ? Phase::lost : Phase::tracking;
   return local_.predict(scan_.timing);
 }
 
@@ -94,7 +94,7 @@ std::optional<Solution> Tracker::solve(const Prior& prior) {
   const Solution found =
       local_.align_moving_or_stationary(*scan_.features, prior, scan_.finest_level);
   if (phase_ == Phase::starting) return found;
-  return relocalizer_.follow_turn(found, scan_, prior, last_, local_);
+  return relocalizer_.follow_turn(found, scan_, prior, history_, local_);
 }
 
 /// The prediction, if the sensor is not found. None where it went unseen for longer than it can be
@@ -103,14 +103,14 @@ std::optional<Solution> Tracker::solve(const Prior& prior) {
 /// is waited for while scans are missing or poor.
 std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const Prior& prior) {
   const auto is_predicted = [&](const Solution& solution) {
-    return is_in_place(solution, prior, last_.fit.relative(solution, scan_.structure));
+    return is_in_place(solution, prior, history_.fit.relative(solution, scan_.structure));
   };
-  const bool is_searchable = last_.unseen_s(scan_.timing) <= motion::kLongestGap_s;
+  const bool is_searchable = history_.unseen_s(scan_.timing) <= motion::kLongestGap_s;
   if (!is_searchable && !local_.is_stationary() && !is_predicted(at_prediction)) {
     return std::nullopt;
   }
   const std::optional<Solution> found =
-      relocalizer_.find(scan_, prior, at_prediction, last_, local_);
+      relocalizer_.find(scan_, prior, at_prediction, history_, local_);
   const bool is_found = found && !is_lost(*found) && (is_searchable || is_predicted(*found));
   return is_found ? *found : local_.unaligned(prior);
 }
@@ -121,13 +121,13 @@ bool Tracker::is_lost(const Solution& solution) const {
   // Not a part of the features: in a park a fifth of them may match, and the alignment be good.
   return matched < static_cast<double>(tracking::kMinFeatures) ||
          solution.inliers < tracking::kMinMeanWeight * matched ||
-         last_.fit.relative(solution, scan_.structure) < registration::kChanceFit;
+         history_.fit.relative(solution, scan_.structure) < registration::kChanceFit;
 }
 
 Tracker::Alignment Tracker::judge(const Solution& solution) const {
   Alignment a{.solution = solution};
   if (is_first()) return a;
-  const double fit = last_.fit.relative(solution, scan_.structure);
+  const double fit = history_.fit.relative(solution, scan_.structure);
   if (is_lost(solution)) {
     a.status = TrackingStatus::lost;
     a.is_explained = false;
@@ -143,10 +143,11 @@ Tracker::Alignment Tracker::judge(const Solution& solution) const {
 void Tracker::accept(const Prior& prior) {
   const Solution& solution = alignment_.solution;
   const bool is_lost = alignment_.status == TrackingStatus::lost;
-  last_.is_doubtful = last_.fit.relative(solution, scan_.structure) < registration::kDoubtfulFit;
+  history_.is_doubtful =
+      history_.fit.relative(solution, scan_.structure) < registration::kDoubtfulFit;
   if (alignment_.is_explained) {
-    last_.end_ns = scan_.timing.end_ns;
-    if (phase_ != Phase::starting) last_.fit.learn(solution, scan_.structure);
+    history_.end_ns = scan_.timing.end_ns;
+    if (phase_ != Phase::starting) history_.fit.learn(solution, scan_.structure);
   }
   // A scan whose returns all belong to its end has no middle. One that has not converged is farther
   // off than its information says, and the noise would grow by its errors.

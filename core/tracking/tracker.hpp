@@ -86,7 +86,7 @@ class Tracker {
   Phase phase_ = Phase::starting;
   Observation scan_;     // the last scan
   Alignment alignment_;  // of it
-  LastAlignment last_;   // the last one that is believed
+  AlignmentHistory history_;
 };
 
 }  // namespace lilo::core

@@ -181,7 +181,7 @@ void solver_round(benchmark::State& state) {
   for (const Feature& f : all) {
     points.push_back({position_of(f), {f.dx_m, f.dy_m, f.dz_m}, f.kind});
   }
-  maps.insert(points, core::LocalMaps::kUsual);
+  maps.insert(points, core::LocalMaps::kWhole);
   core::Selection selection(1200, 1500);
   const auto& chosen = selection.choose(all);
   core::Solver solver({.max_iterations = 1}, 4096);

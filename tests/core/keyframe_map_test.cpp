@@ -28,7 +28,7 @@ class KeyframeMapTest : public testing::Test {
     const test::ObservedScan scan(
         test::yard(), [&](double) { return T; }, index);
     return map_.grow(
-        {scan.timing(), scan.features(), solution_at(T, matched), T, use, LocalMaps::kUsual});
+        {scan.timing(), scan.features(), solution_at(T, matched), T, use, LocalMaps::kWhole});
   }
   void fill() {
     for (int k = 0; k < kEnough; ++k) grow(0.5 * k);
@@ -119,11 +119,11 @@ TEST_F(KeyframeMapTest, AKeyframeEntersAtTheLevelOfItsOwnSurroundings) {
     map_.grow({scan.timing(), scan.features(), solution_at(T), T, use, finest_level});
   };
   const auto half_cells = [&] {
-    return map_.cells().at(LocalMaps::kNarrow, FeatureKind::structure).size();
+    return map_.cells().at(LocalMaps::kHalf, FeatureKind::structure).size();
   };
   ASSERT_EQ(half_cells(), 0);
-  take(LocalMaps::kNarrow, MapUse::keyframe);
-  take(LocalMaps::kUsual, MapUse::end_only);
+  take(LocalMaps::kHalf, MapUse::keyframe);
+  take(LocalMaps::kWhole, MapUse::end_only);
   EXPECT_GT(half_cells(), 0);
 }
 
@@ -131,10 +131,10 @@ TEST_F(KeyframeMapTest, BeginsWithOneScanAtOnce) {
   fill();
   const test::ObservedScan scan(
       test::yard(), [](double) { return Pose{}; }, 0);
-  map_.begin(scan.features(), solution_at({}).trajectory, LocalMaps::kUsual);
+  map_.begin(scan.features(), solution_at({}).trajectory, LocalMaps::kWhole);
   EXPECT_EQ(map_.keyframes(), 1);
   KeyframeMap fresh{DefaultConfig{}};
-  fresh.begin(scan.features(), solution_at({}).trajectory, LocalMaps::kUsual);
+  fresh.begin(scan.features(), solution_at({}).trajectory, LocalMaps::kWhole);
   EXPECT_EQ(map_.cells().size(), fresh.cells().size()) << "nothing of before is left";
 }
 

@@ -38,15 +38,15 @@ bool knows(LocalMaps& maps, std::size_t level, const Eigen::Vector3d& point_m) {
 
 TEST(LocalMaps, HalfCellsAreFilledInNarrowSurroundingsOnly) {
   LocalMaps outdoors = maps(), indoors = maps();
-  outdoors.insert(wall(2.0), LocalMaps::kUsual);
-  indoors.insert(wall(2.0), LocalMaps::kNarrow);
+  outdoors.insert(wall(2.0), LocalMaps::kWhole);
+  indoors.insert(wall(2.0), LocalMaps::kHalf);
   const Eigen::Vector3d probe(4.02, 0.1, 0.1);
-  EXPECT_FALSE(knows(outdoors, LocalMaps::kNarrow, probe));
-  EXPECT_TRUE(knows(indoors, LocalMaps::kNarrow, probe));
+  EXPECT_FALSE(knows(outdoors, LocalMaps::kHalf, probe));
+  EXPECT_TRUE(knows(indoors, LocalMaps::kHalf, probe));
   for (LocalMaps* one : {&outdoors, &indoors}) {
-    EXPECT_TRUE(knows(*one, LocalMaps::kUsual, probe));
+    EXPECT_TRUE(knows(*one, LocalMaps::kWhole, probe));
     EXPECT_TRUE(knows(*one, LocalMaps::kCoarse, probe));
-    EXPECT_FALSE(one->at(LocalMaps::kUsual, FeatureKind::ground).find(probe).information !=
+    EXPECT_FALSE(one->at(LocalMaps::kWhole, FeatureKind::ground).find(probe).information !=
                  nullptr);
   }
 }
@@ -60,10 +60,10 @@ TEST(LocalMaps, HalfCellsTellApartWhatWholeOnesBlur) {
     p.point_m.x() -= 0.5;
     points.push_back(p);
   }
-  both.insert(points, LocalMaps::kNarrow);
+  both.insert(points, LocalMaps::kHalf);
   const Eigen::Vector3d on_wall(4.0, 0.1, 0.1);
-  const Match narrow = both.at(LocalMaps::kNarrow, FeatureKind::structure).find(on_wall);
-  const Match usual = both.at(LocalMaps::kUsual, FeatureKind::structure).find(on_wall);
+  const Match narrow = both.at(LocalMaps::kHalf, FeatureKind::structure).find(on_wall);
+  const Match usual = both.at(LocalMaps::kWhole, FeatureKind::structure).find(on_wall);
   ASSERT_NE(narrow.information, nullptr);
   EXPECT_NEAR(narrow.from_mean_m.x(), 0.0F, 0.01F);
   const float across = (*narrow.information)[0];
@@ -73,10 +73,10 @@ TEST(LocalMaps, HalfCellsTellApartWhatWholeOnesBlur) {
 
 TEST(LocalMaps, ForgetsHalfCellsNearer) {
   LocalMaps one = maps();
-  one.insert(wall(2.0), LocalMaps::kNarrow);
+  one.insert(wall(2.0), LocalMaps::kHalf);
   for (int sweep = 0; sweep < 200; ++sweep) one.forget_beyond({-30.0, 0.0, 0.0}, 100.0);
-  EXPECT_EQ(one.at(LocalMaps::kNarrow, FeatureKind::structure).size(), 0);
-  EXPECT_GT(one.at(LocalMaps::kUsual, FeatureKind::structure).size(), 0);
+  EXPECT_EQ(one.at(LocalMaps::kHalf, FeatureKind::structure).size(), 0);
+  EXPECT_GT(one.at(LocalMaps::kWhole, FeatureKind::structure).size(), 0);
   one.clear();
   EXPECT_EQ(one.size(), 0);
 }

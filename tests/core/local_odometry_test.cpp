@@ -54,7 +54,7 @@ class LocalOdometryTest : public testing::Test {
     local_.rewind(scan.timing());
     local_.begin_map_of(scan.features(),
                         steady({kAhead, {-speed_mps * kSpan_s, 0.0, 0.0}}, ahead(speed_mps)),
-                        LocalMaps::kUsual);
+                        LocalMaps::kWhole);
   }
   static test::ObservedScan in_yard(double speed_mps, std::uint64_t index) {
     return {test::yard(), test::along_x(speed_mps, index), index};
@@ -104,7 +104,7 @@ TEST_F(LocalOdometryTest, FollowsADriveThroughAYard) {
     const test::ObservedScan scan = in_yard(kSpeed_mps, k);
     const Solution solution = local_.align(scan.features(), local_.predict(scan.timing()));
     local_.accept(scan.timing(), solution);
-    local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kUsual}, scan.features(),
+    local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kWhole}, scan.features(),
                     solution, MapUse::keyframe);
     const Eigen::Vector3d truth_m(kSpeed_mps * kSpan_s * static_cast<double>(k), 0.0, 0.0);
     EXPECT_NEAR((local_.state().T_odom_sensor.translation_m - truth_m).norm(), 0.0, 0.02) << k;
@@ -179,10 +179,10 @@ TEST_F(LocalOdometryTest, ASensorThatIsTakenToStandIsFollowedWhenItSetsOff) {
     };
     const test::ObservedScan scan(test::yard(), path, k);
     const Solution solution = local_.align_moving_or_stationary(
-        scan.features(), local_.predict(scan.timing()), LocalMaps::kUsual);
+        scan.features(), local_.predict(scan.timing()), LocalMaps::kWhole);
     local_.accept(scan.timing(), solution);
     local_.observe_stationary();
-    local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kUsual}, scan.features(),
+    local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kWhole}, scan.features(),
                     solution, MapUse::keyframe);
     const Eigen::Vector3d error_m =
         local_.state().T_odom_sensor.translation_m - path(1.0).translation_m;

@@ -24,10 +24,10 @@ class RelocalizerTest : public testing::Test {
         local_.accept_first(scan.timing());
       } else {
         local_.accept(scan.timing(), solution);
-        last_.fit.learn(solution, scan.observation().structure);
+        history_.fit.learn(solution, scan.observation().structure);
       }
-      last_.end_ns = scan.timing().end_ns;
-      local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kUsual}, scan.features(),
+      history_.end_ns = scan.timing().end_ns;
+      local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kWhole}, scan.features(),
                       solution, MapUse::keyframe);
     }
   }
@@ -37,14 +37,15 @@ class RelocalizerTest : public testing::Test {
         scene, [&](double) { return T; }, 16);
     const Prior prior = local_.predict(scan.timing());
     const Solution at_prediction = local_.align(scan.features(), prior);
-    const auto found = relocalizer_.find(scan.observation(), prior, at_prediction, last_, local_);
+    const auto found =
+        relocalizer_.find(scan.observation(), prior, at_prediction, history_, local_);
     if (!found) return std::nullopt;
     return found->trajectory.end();
   }
 
   LocalOdometry local_{DefaultConfig{}, kMost};
   Relocalizer relocalizer_{kMost};
-  LastAlignment last_;
+  AlignmentHistory history_;
 };
 
 Pose at(double x_m, double y_m, double yaw_rad) {
@@ -76,7 +77,7 @@ TEST_F(RelocalizerTest, FollowsATurnThatBeginsWithinTheScan) {
   const Prior prior = local_.predict(scan.timing());
   const Solution found = local_.align(scan.features(), prior);
   const Solution followed =
-      relocalizer_.follow_turn(found, scan.observation(), prior, last_, local_);
+      relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
   const Pose error = at(0.0, 0.0, kEnd_rad).inverse() * followed.trajectory.end();
   EXPECT_LT(error.translation_m.norm(), 0.05);
   EXPECT_LT(so3_log(error.rotation).norm(), 0.02);
@@ -92,7 +93,7 @@ TEST_F(RelocalizerTest, FollowsATurnThatBeganAtTheEndOfTheLastScan) {
   const Prior prior = local_.predict(scan.timing());
   const Solution found = local_.align(scan.features(), prior);
   const Solution followed =
-      relocalizer_.follow_turn(found, scan.observation(), prior, last_, local_);
+      relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
   const Pose error = at(0.0, 0.0, kEnd_rad).inverse() * followed.trajectory.end();
   EXPECT_LT(error.translation_m.norm(), 0.05);
   EXPECT_LT(so3_log(error.rotation).norm(), 0.02);
@@ -106,7 +107,7 @@ TEST_F(RelocalizerTest, FollowsNoTurnThatEndsElsewhere) {
   const Prior prior = local_.predict(scan.timing());
   const Solution found = local_.align(scan.features(), prior);
   const Solution followed =
-      relocalizer_.follow_turn(found, scan.observation(), prior, last_, local_);
+      relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
   EXPECT_EQ(followed.trajectory.knots, found.trajectory.knots);
 }
 
@@ -116,17 +117,17 @@ TEST_F(RelocalizerTest, LeavesAnAlignmentThatFitsAlone) {
   const Prior prior = local_.predict(scan.timing());
   const Solution found = local_.align(scan.features(), prior);
   const Solution followed =
-      relocalizer_.follow_turn(found, scan.observation(), prior, last_, local_);
+      relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
   EXPECT_EQ(followed.trajectory.knots, found.trajectory.knots);
   EXPECT_TRUE(is_in_place(found, prior, 1.0));
   EXPECT_FALSE(is_in_place(found, prior, 0.5)) << "too little of the structure fits";
 }
 
-TEST(LastAlignment, CountsAClockSetBackLikeOneSetForward) {
-  LastAlignment last;
-  last.end_ns = 5'000'000'000;
-  EXPECT_NEAR(last.unseen_s({6'000'000'000, 6'100'000'000}), 1.0, 1e-9);
-  EXPECT_NEAR(last.unseen_s({4'000'000'000, 4'100'000'000}), 1.0, 1e-9);
+TEST(AlignmentHistory, CountsAClockSetBackLikeOneSetForward) {
+  AlignmentHistory history;
+  history.end_ns = 5'000'000'000;
+  EXPECT_NEAR(history.unseen_s({6'000'000'000, 6'100'000'000}), 1.0, 1e-9);
+  EXPECT_NEAR(history.unseen_s({4'000'000'000, 4'100'000'000}), 1.0, 1e-9);
 }
 
 }  // namespace

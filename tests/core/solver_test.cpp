@@ -39,7 +39,7 @@ LocalMaps map_of(const std::vector<Eigen::Vector3d>& points, const Pose& T_odom_
   for (const Eigen::Vector3d& p : points) {
     of_map.push_back({T_odom_room * p, Eigen::Vector3f::Zero(), FeatureKind::structure});
   }
-  maps.insert(of_map, LocalMaps::kUsual);
+  maps.insert(of_map, LocalMaps::kWhole);
   return maps;
 }
 
