@@ -2,6 +2,7 @@
 #include "core/image/selection.hpp"
 
 #include "core/constants.hpp"
+#include "core/scan.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/constants.hpp"
-#include "core/image/feature_image.hpp"
+#include "core/feature.hpp"
 
 #include <array>
 #include <cstdint>

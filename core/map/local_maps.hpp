@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/image/feature_image.hpp"
+#include "core/feature.hpp"
 #include "core/map/cell_map.hpp"
 
 #include <Eigen/Core>

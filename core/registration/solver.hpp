@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/constants.hpp"
-#include "core/image/feature_image.hpp"
+#include "core/feature.hpp"
 #include "core/map/local_maps.hpp"
 #include "core/motion/motion_prior.hpp"
 #include "core/motion/trajectory.hpp"
