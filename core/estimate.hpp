@@ -8,12 +8,12 @@
 
 namespace lilo {
 
-/// How far a pose may be trusted. Always said, never implied.
+/// How far a pose may be trusted.
 enum class TrackingStatus : std::uint8_t {
   initializing,  ///< no map yet, or not yet sure of the first motion
   tracking,      ///< aligned with the map
-  degraded,      ///< aligned, but some direction was held to the prediction or data were missing
-  lost,          ///< not aligned: the pose is the prediction alone; or just found to be wrong
+  degraded,      ///< aligned, but the prediction held some direction, or data were missing
+  lost,          ///< not aligned: the pose is the prediction; or it was just found to be wrong
 };
 
 /// Velocity of the sensor, in the sensor's own frame.
@@ -26,29 +26,31 @@ struct Twist {
 struct WeakDirection {
   /// Unit vector, order x y z rx ry rz (m and rad, as in `covariance`), in the sensor's frame.
   Vector6d direction = Vector6d::Zero();
-  /// Part of the information on it that came from the scan: 0 nothing, the prediction alone; 1 all.
+  /// Part of the information along it that came from the scan. 0: the prediction alone; 1: the scan
+  /// alone.
   double from_scan = 0.0;
 };
 inline constexpr int kMaxWeakDirections = 6;
 
-/// What the odometry says of one scan.
+/// The result of the odometry for one scan.
 struct Estimate {
   std::uint64_t scan_index = 0;
   std::int64_t stamp_ns = 0;  ///< the instant the pose describes: the scan's last firing
   Pose T_odom_sensor;         ///< identity at the first scan
   Twist twist;
   TrackingStatus status = TrackingStatus::initializing;
-  /// Of the pose since the first scan: 1-sigma squared, x y z rx ry rz (m, rad), in the sensor's
-  /// frame. Grows with the way travelled. How far it can be trusted: core/README.md.
+  /// Covariance of the pose since the first scan: x y z rx ry rz (m, rad), in the sensor's frame.
+  /// It grows with the way travelled. core/README.md says how far it can be trusted.
   /// Valid only where has_covariance is set.
   Matrix6d covariance = Matrix6d::Zero();
   bool has_covariance = false;
-  /// The first `weak_count` are valid, the weakest first. With any, the status is not `tracking`.
+  /// The first `weak_count` are valid, the weakest first. With one or more, the status is not
+  /// `tracking`.
   std::array<WeakDirection, kMaxWeakDirections> weak_directions{};
   int weak_count = 0;
 
-  /// Times the map was given up, after a loss, for another begun where the prediction ended. Only
-  /// that prediction joins poses of different counts.
+  /// How often a new session began: the map was given up, and another one begun where the
+  /// prediction ended. Only that prediction joins poses of different counts.
   std::uint32_t restarts = 0;
 
   int ground_count = 0;                   ///< features used
@@ -56,8 +58,7 @@ struct Estimate {
   int edge_count = 0, surface_count = 0;  ///< features used (profile paper)
   int map_cell_count = 0;  ///< in the local map before the scan, of all sizes (default)
   int map_edge_count = 0, map_surface_count = 0;  ///< points in the local map (paper)
-  /// Points that would have made a new cell of a map that was full, since the odometry began. They
-  /// were left out.
+  /// Points left out since the odometry began: they needed a new cell of a map that was full.
   std::uint64_t map_refused_count = 0;
   int correspondence_count = 0;     ///< residuals of the last iteration
   int iterations = 0;               ///< Gauss-Newton steps taken

@@ -21,12 +21,12 @@ class FeatureExtractor {
   FeatureExtractor(FeatureExtractor&&) noexcept;
   FeatureExtractor& operator=(FeatureExtractor&&) noexcept;
 
-  /// Takes what is new in a scan that is being written. The newest returns wait for a later call,
-  /// because a packet that was overtaken may still get in among them.
+  /// Takes the new returns of a scan that is being written. The newest ones wait for a later call,
+  /// because a late packet may still insert returns among them.
   void follow(const Scan& scan);
   /// Returns were inserted at `index` into the scan being followed.
   void inserted(std::size_t index);
-  /// The scan is whole: takes the rest, and `out` becomes its features. The next call is about
+  /// The scan is whole: takes the rest of it and writes its features to `out`. The next call begins
   /// another scan.
   void finish(const Scan& scan, ScanFeatures& out);
   /// Nobody wants the features of the scan being followed: the next call is about another one.
@@ -37,7 +37,7 @@ class FeatureExtractor {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The most features that a scan of a sensor with so many rings gives, to reserve memory for them.
+/// The most features that a scan of a sensor with so many rings can have, to reserve memory.
 std::size_t most_features(const OdometryConfig& config, int rings);
 
 }  // namespace lilo

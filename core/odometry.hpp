@@ -31,22 +31,21 @@ class Odometry {
   /// a scan too poor to align gives the prediction with status `lost`.
   Estimate process(const Scan& scan, StageHook hook = {});
 
-  /// The same in parts, for those who want the pose early: align() and then update_map(), with the
+  /// The same in parts, so that the pose comes early: align() and then update_map(), both with the
   /// features that FeatureExtractor found in the scan. Profile paper does all of it in align().
   Estimate align(const Scan& scan, const ScanFeatures& features, StageHook hook = {});
-  /// What the scan just aligned adds to the map. Call it once after each align().
+  /// Adds the scan just aligned to the map. To be called once after each align().
   void update_map(const ScanFeatures& features, StageHook hook = {});
 
   /// The local map in the odometry frame (m), in no particular order: profile default, the mean of
   /// every fine cell; paper, both map clouds. Allocates: for saving, not for every scan.
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
 
-  /// What the last scan was aligned by, in the sensor's frame at the instant of its pose (m): at
-  /// most `most` points, evenly from all of them. Replaces what `out` held, and allocates where
-  /// that had less room. Profile paper: none.
+  /// The features by which the last scan was aligned, in the sensor's frame at the instant of its
+  /// pose (m): at most `most` points, evenly from all of them. `out` is overwritten; it allocates
+  /// if its capacity is less. Profile paper: none.
   void aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
-  /// What the last update_map() added to the map, likewise in the sensor's frame; nothing when the
-  /// map did not grow.
+  /// The points that the last update_map() added to the map, likewise; none if it did not grow.
   void mapped_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
 
  private:

@@ -33,7 +33,7 @@ struct Pose {
 };
 
 /// Magnitude of a motion: the larger of its translation and of the way by which its rotation moves
-/// what is seen motion::kLever_m away.
+/// a point at the distance motion::kLever_m.
 [[nodiscard]] double magnitude_m(const Eigen::Vector3d& turned_rad, const Eigen::Vector3d& moved_m);
 [[nodiscard]] double magnitude_m(const Pose& T);
 

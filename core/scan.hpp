@@ -30,20 +30,21 @@ struct Return {
 };
 static_assert(sizeof(Return) == 24);
 
-/// A vector that grows by resize() does not write zeros first where returns are written next: those
-/// of an HDL-64E are 3 MB a turn. Who wants the memory touched gives resize() or assign() a value.
+/// With this allocator resize() leaves new elements uninitialised, because returns are written
+/// there next: 3 MB in a revolution of an HDL-64E. resize() and assign() with a value still write
+/// it.
 template <typename T>
-struct LeavesUnwritten : std::allocator<T> {
+struct DefaultInitAllocator : std::allocator<T> {
   template <typename U>
   void construct(U* place) noexcept {
     ::new (static_cast<void*>(place)) U;
   }
 };
-using Returns = std::vector<Return, LeavesUnwritten<Return>>;
+using Returns = std::vector<Return, DefaultInitAllocator<Return>>;
 
 /// Where the stamps of a scan come from.
 enum class ClockSource : std::uint8_t {
-  host,    ///< the time the computer received (or captured) the packets places the sensor's hour
+  host,    ///< the sensor's clock, in the hour in which the computer received (or captured) it
   gps,     ///< GPRMC sentence and PPS lock: the sensor's clock is UTC
   replay,  ///< times given by a data set
 };
@@ -73,13 +74,13 @@ struct Scan {
   bool complete = false;            ///< a whole revolution with no hole beyond the configured one
   bool motion_compensated = false;  ///< the data set's authors already moved all returns to end_ns
   float coverage_rad = 0.0F;        ///< azimuth swept by packets that arrived, at most 2 pi
-  float hole_start_rad = 0.0F;  ///< azimuth (as Return::azimuth_rad) where the largest hole starts,
-  float hole_width_rad = 0.0F;  ///< and how far it reaches in the direction of turning; 0 = none. A
-                                ///< sector the sensor never fires in is none once it is known
+  /// Azimuth (as Return::azimuth_rad) where the largest hole starts, and its width in the direction
+  /// of rotation; 0: no hole. A sector in which the sensor never fires is not a hole, once known.
+  float hole_start_rad = 0.0F, hole_width_rad = 0.0F;
   PacketCounts packets;
   BeamTable beams;
-  /// Firing order; of two echoes of a VLP-16's firing the last comes first, of an HDL-64E's the
-  /// strongest (measured, drivers/README.md). Capacity is reserved once and kept.
+  /// In firing order. Of two echoes of one firing a VLP-16 sends the last one first, an HDL-64E the
+  /// strongest one (measured, drivers/README.md). Capacity is reserved once and kept.
   Returns returns;
 
   /// Empties the scan for reuse; keeps the memory.

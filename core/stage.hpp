@@ -5,7 +5,7 @@
 
 namespace lilo {
 
-/// The stations of the pipeline, for those who time it.
+/// The stages of the pipeline, to be timed.
 enum class Stage : std::uint8_t { project, filter, reconstruct, deskew, align, update_map };
 inline constexpr int kStageCount = 6;
 const char* to_string(Stage stage);

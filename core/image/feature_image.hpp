@@ -23,12 +23,12 @@ struct RangeLimits {
 ///
 /// Returns are projected (paper Eqs. 2-5), and every filled pixel is classified by the slope to its
 /// neighbours above and below: the vertical gradient of Eq. 7, in metres instead of grey levels.
-/// The first return in a pixel stays: the nearest would pull every range nearer by its noise.
+/// A pixel keeps its first return. To keep the nearest one would shorten every range by its noise.
 ///
-/// A scan can be taken in parts, begin() -> add() -> ... -> finish(), while it is being measured.
-/// Columns that the sensor has passed are classified at once; should a return come for one of them
-/// after all, everything is classified again at the end. So the features are the same bits however
-/// the scan was divided.
+/// A scan can be taken in parts while it is being measured: begin(), add() as often as needed,
+/// finish(). Columns that the sensor has passed are classified at once. If a return still comes for
+/// one of them, all columns are classified again at the end. So the features are the same bits
+/// however the scan was divided.
 class FeatureImage {
  public:
   FeatureImage(int columns, RangeLimits limits);
@@ -52,30 +52,31 @@ class FeatureImage {
     std::int32_t t_ns;
   };
   using Filled = std::array<std::uint64_t, kMaxRings / 64>;  // a bit for each ring
-  /// A column as its own pixels see it, an array for each value. A firing may straddle two columns:
-  /// where this one got no return of a ring, that of the column before or after stands in if it is
-  /// below the horizon. Of the ground, that is; leaves and rails above hardly ever go on from
-  /// column to column.
+  /// One column, an array for each value. A firing may straddle two columns: where this one has no
+  /// return of a ring, the return of the column before or after is used, if it is below the
+  /// horizon. That is mostly ground, which continues from column to column; leaves and rails do
+  /// not.
   struct ColumnView {
     std::array<float, kMaxRings> x_m, y_m, z_m;
     std::array<float, kMaxRings> horizontal_m;  ///< from the sensor's axis; 0: empty
     std::array<std::int32_t, kMaxRings> t_ns;
     Filled own;
   };
-  /// From each ring's pixel to the next's, if both are on one surface; else neither flat nor steep.
-  /// Index 2 is the way from ring 0 to ring 1, and there is room around.
+  /// The edge from each ring's pixel to that of the next ring. It is flat or steep if both are on
+  /// one surface, else neither. Index 2 is the edge from ring 0 to ring 1; unused edges surround
+  /// it.
   struct RingEdges {
     std::array<float, kMaxRings + 3> length2_m2;
     std::array<std::int32_t, kMaxRings + 3> flat, steep;  ///< 1 or 0
-    std::array<std::int32_t, kMaxRings + 3> level;        ///< flat, overhead, and as a ceiling is
+    std::array<std::int32_t, kMaxRings + 3> level;        ///< flat, and a ceiling
   };
-  /// How far the sensor has turned. A column's place counts from `first_column`, in the order in
-  /// which the sensor passes them.
+  /// How far the sensor has turned. The place of a column counts from `first_column`, in the order
+  /// in which the sensor passes the columns.
   struct Sweep {
     int first_column = -1;     ///< -1: no return yet
     int front = 0;             ///< the farthest place before the seam that a return fell into
     int classified = 0;        ///< places before this one are done
-    bool invalidated = false;  ///< and one of them got another return
+    bool invalidated = false;  ///< a column that was classified got another return
   };
   struct Projector;  // in feature_image_project.cpp
   static float columns_per_rad(int columns);
@@ -98,10 +99,9 @@ class FeatureImage {
   float nearest2_, farthest2_;
   BeamTable beams_;
   std::vector<Pixel> pixels_;   // valid where filled
-  std::vector<Filled> filled_;  // of every column; apart, because most returns only ask this
-  /// Between a ring and the next, which of the highest is the one below.
-  std::array<float, kMaxRings> gap_rad_{};
-  RingEdges edges_;  // of the column in hand
+  std::vector<Filled> filled_;  // of every column; apart, because most returns only read this
+  std::array<float, kMaxRings> gap_rad_{};  // to the next ring; of the highest, to the one below
+  RingEdges edges_;                         // of the column in hand
   std::vector<Feature> features_;
   std::vector<Feature> last_features_;  // of columns to the right of straight behind
   Sweep sweep_;

@@ -10,26 +10,26 @@
 
 namespace lilo::core {
 
-/// Chooses the features to align: one a voxel, so that near and far surfaces count by their area
-/// and not by the density of the rays. The voxels of each kind follow the scene, to keep the
-/// numbers of features near their goals. Features are visited spread over the image: the first of a
-/// voxel in azimuth order would always be the one on the same side of it, and bend the path.
+/// Chooses the features to align: one a voxel, so that surfaces count by their area and not by the
+/// density of the rays. The voxel of each kind adapts to the scene, so that the number of features
+/// stays near its goal. Features are visited spread over the image: in azimuth order the first one
+/// of a voxel would always lie on the same side of it, and that bends the path.
 /// No allocation after construction.
 class Selection {
  public:
   Selection(int ground_goal, int structure_goal);
 
   /// The chosen features, in the image's order; the result lives until the next call.
-  /// `with_overhead`: also of what is_overhead().
+  /// `with_overhead`: those that are is_overhead() count too.
   const std::vector<Feature>& choose(const std::vector<Feature>& all, bool with_overhead = true);
 
-  /// What choose() gave last.
+  /// The result of the last choose().
   [[nodiscard]] const std::vector<Feature>& chosen() const { return chosen_; }
 
-  /// A step that visits all of `size` elements, one after the other far apart and evenly spread.
+  /// A stride that visits all of `size` elements, spread evenly: any two in a row are far apart.
   [[nodiscard]] static std::size_t golden_stride(std::size_t size);
 
-  /// More are never chosen.
+  /// The most features that are ever chosen.
   [[nodiscard]] std::size_t most() const { return chosen_.capacity(); }
 
  private:
@@ -39,8 +39,8 @@ class Selection {
   static constexpr int kKindBit = 48;
   [[nodiscard]] static std::uint64_t voxel_of(const Feature& f, float per_m);
   [[nodiscard]] static std::size_t kind_of(std::uint64_t voxel) { return (voxel - 1) >> kKindBit; }
-  /// False when a goal was reached twice over before the end, or not even half though there is
-  /// more. Adapts the voxels in any case.
+  /// Adapts the voxels. False when there were twice as many features as the goal before the end, or
+  /// less than half of it although there are more.
   bool take_evenly(const std::vector<Feature>& all, bool with_overhead);
   bool take(std::uint64_t voxel);
 
@@ -55,12 +55,12 @@ class Selection {
 /// How thin_out() spreads the features that it keeps.
 enum class Evenly {
   in_image,    ///< one of so many returns of a ring
-  along_rings  ///< one of so many metres: returns lie the farther apart the farther they are
+  along_rings  ///< one in so many metres: returns that are farther away lie farther apart
 };
 
-/// `most` of them at most. In the image's order every second feature would be every second ring,
-/// wherever columns are filled alike: each ring is thinned out by itself. `with_overhead`: also of
-/// what is_overhead().
+/// Keeps at most `most` features. Each ring is thinned out by itself: in the order of the image
+/// every second feature would be every second ring, wherever columns are filled alike.
+/// `with_overhead`: those that are is_overhead() count too.
 void thin_out(const std::vector<Feature>& all, std::size_t most, Evenly evenly,
               std::vector<Feature>& fewer, bool with_overhead = true);
 

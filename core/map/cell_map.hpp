@@ -12,12 +12,12 @@
 #include <cstdint>
 #include <vector>
 
-/// The local map: points summed up in small cubic cells of a hash table.
+/// A map: points summed up in small cubic cells of a hash table.
 namespace lilo::core {
 
-/// What the map says about a point near one cell.
+/// What the map tells of a point.
 struct Match {
-  Eigen::Vector3f from_mean_m;             ///< from the mean of the map points around to the point
+  Eigen::Vector3f from_mean_m;             ///< from the mean of the map points around it
   const Symmetric* information = nullptr;  ///< 1/m^2; nullptr: the map knows too little there
 };
 
@@ -25,20 +25,20 @@ struct CellMapConfig {
   float cell_m = static_cast<float>(DefaultConfig{}.cell_m);
   /// 1 sigma of a return across a surface.
   float noise_m = static_cast<float>(DefaultConfig{}.noise_m);
-  /// Ground: informs of its height and slope only, and not at all where no more than a strip of it
-  /// was seen. Where it ends, before a wall or at one ring, moves with the sensor and would hold it
-  /// where it is; and of a strip, the foot of the wall would make a slope.
+  /// A map of ground. It gives information of height and slope only, and none where only a strip of
+  /// ground was seen. The end of a strip, at a wall or at one ring, moves with the sensor and would
+  /// hold the sensor in place; the foot of the wall would make it a slope.
   bool level = false;
-  /// Cells; beyond it new ones are refused and counted.
+  /// The most cells. Points that need another one are left out and counted.
   int capacity = DefaultConfig{}.map_cells;
   float memory = map::kMemory;
 };
 
-/// A cell's distribution is the Gaussian of the points in the 3x3x3 cells around it. It informs
-/// only along directions in which the points are thin against the window: a wall along its normal,
-/// a trunk across its axis, foliage hardly at all. What fills its window evenly would only hold the
-/// scan where it is (and drag it towards what was seen first). Memory is reserved at construction.
-/// Not thread-safe.
+/// The distribution of a cell is the Gaussian of the points in the 3x3x3 cells around it, its
+/// window. It gives information only along directions in which the points are thin against the
+/// window: a wall along its normal, a trunk across its axis, foliage hardly at all. Points that
+/// fill the window evenly would only hold the scan in place, and drag it towards what was seen
+/// first. Memory is reserved at construction. Not thread-safe.
 class CellMap {
  public:
   static constexpr std::int32_t kNone = CellTable::kNone;
@@ -48,9 +48,9 @@ class CellMap {
     std::int32_t cached = kNone;  ///< the cell that it was before, if a point has hardly moved
     std::size_t bucket = 0;       ///< in the table; only where nothing is cached
   };
-  /// Vector to the next sampled point on the same surface. The surface between the two was not seen
-  /// and counts as spread; without it a single ring on the ground looks like a plane through its
-  /// own rays, blind to pitch ("cone lock").
+  /// Vector to the next sample of the same surface (Feature::dx_m). The surface between the two was
+  /// not seen and counts as spread evenly. Otherwise a single ring on the ground looks like a plane
+  /// that contains its own rays, and such a plane does not see pitch ("cone lock").
   struct SampleGap {
     explicit SampleGap(const Eigen::Vector3f& gap_m)
         : square_m2(gap_m.squaredNorm()), outer_m2(outer(gap_m)) {}
@@ -66,13 +66,13 @@ class CellMap {
     add(find_or_insert(key), key, point_m, SampleGap(gap_m));
   }
 
-  /// The distribution around a point. Fits are cached: a cell is fitted again when it
-  /// has become half as old again, in keyframes.
+  /// The distribution around a point. Fits are cached: a cell is fitted again when its age in
+  /// keyframes has grown by half.
   Match find(const Eigen::Vector3d& point_m) { return match(cell_at(key_of(point_m)), point_m); }
 
-  /// find() and insert() in steps. Each but the last asks the memory for what the next one reads;
-  /// who takes them for many points in turn does not wait for it.
-  /// `cached`: what cell_at() answered for it before, the map being the same.
+  /// find() and insert() in steps. Each step but the last prefetches what the next one reads: taken
+  /// for many points at a time, no step waits for the memory.
+  /// `cached`: the result of cell_at() for this point in the same map before.
   [[nodiscard]] CellKey key_of(const Eigen::Vector3d& point_m, std::int32_t cached = kNone) const {
     CellKey key{index_of(point_m), cached};
     if (cached != kNone) {
@@ -111,7 +111,7 @@ class CellMap {
            const SampleGap& gap) {
     if (at == kNone) return;
     Moments& sums = sums_[static_cast<std::size_t>(at)];
-    // Seen through a window of three cells, a longer gap is just "all of it".
+    // A gap longer than the window of three cells fills all of it.
     const float window_m2 = 9.0F * config_.cell_m * config_.cell_m;
     const float spread =
         gap.square_m2 > window_m2 ? window_m2 / (12.0F * gap.square_m2) : 1.0F / 12.0F;  // if even
@@ -125,8 +125,8 @@ class CellMap {
   /// Forgets everything, keeps the memory.
   void clear();
 
-  /// Forgets cells farther than `radius_m` from `center_m`. Every call looks at the same small
-  /// share of the table, so that no single scan pays for it.
+  /// Forgets cells farther than `radius_m` from `center_m`. Every call looks at the next small part
+  /// of the table, so that no single scan pays for the whole.
   void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
 
   /// Calls `visit` with the mean of every cell's own points (m), in no particular order.
@@ -164,8 +164,8 @@ class CellMap {
   [[nodiscard]] Eigen::Vector3d center_of(const CellIndex& i) const {
     return static_cast<double>(config_.cell_m) * Eigen::Vector3d(i.x + 0.5, i.y + 0.5, i.z + 0.5);
   }
-  /// std::floor() is a call where the processor need not have SSE 4.1. What lies beyond a billion
-  /// cells, or is nan, is counted as there.
+  /// std::floor() is a call where the processor need not have SSE 4.1. Values beyond a billion
+  /// cells are cut off there, and so is nan.
   static std::int32_t floor_of(double v) {
     constexpr std::uint32_t kAbove = 1U << 30U;  // zero: from there, to cut off is to round down
     constexpr double kFar = kAbove - 2U;
@@ -174,14 +174,14 @@ class CellMap {
     return static_cast<std::int32_t>(
         static_cast<std::uint32_t>(static_cast<std::int32_t>(v + kAbove)) - kAbove);
   }
-  /// Mostly they lie across two cache lines.
+  /// The sums of a cell mostly lie across two cache lines.
   void prefetch_sums(std::int32_t at) const {
     const Moments& sums = sums_[static_cast<std::size_t>(at)];
     __builtin_prefetch(&sums.front());
     __builtin_prefetch(&sums.back());
   }
   std::int32_t make(const CellKey& key);
-  /// Of the 27 cells around and including one, those that are there; how many.
+  /// Finds those of the 27 cells around and including one that exist. Returns how many.
   std::size_t neighbours_of(const CellIndex& i, Neighbours& found) const;
   [[nodiscard]] Moments moments_around(const CellIndex& i) const;
   void fit(Cell& cell) const;
@@ -191,7 +191,7 @@ class CellMap {
 
   CellMapConfig config_;
   double per_m_;
-  float kept_;  // of what a cell remembers, when one more point comes
+  float kept_;  // part of a full cell's sums that one more point leaves
   CellTable table_;
   std::vector<Cell> cells_;
   std::vector<Moments> sums_;  // what insert() sums, from the cell's centre

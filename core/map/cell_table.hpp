@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-/// Where the map has its cells: a hash table from a cell's place to its number.
+/// A hash table from the index of a cell to its number.
 namespace lilo::core {
 
 /// A cubic cell of space, counted from the origin.
@@ -15,16 +15,16 @@ struct CellIndex {
   bool operator==(const CellIndex&) const = default;
 };
 
-/// Open addressing, linear probing, no tombstones. An entry knows its cell by a tag: the index, cut
-/// to what differs between cells of one window of 2048 x 2048 x 1024 cells, so that a cell need not
-/// be read to know that it is another. Memory is reserved at construction. Not thread-safe.
+/// Open addressing, linear probing, no tombstones. A slot holds a tag of its cell: the low bits of
+/// the index, which differ between all cells of a window of 2048 x 2048 x 1024. So find() need not
+/// read the cells. Memory is reserved at construction. Not thread-safe.
 class CellTable {
  public:
   static constexpr std::int32_t kNone = -1;
-  /// Height of the window, its smallest side. A cell so far above the middle that the way round the
-  /// window is the shorter one seems to lie below it, this height less its own distance away.
-  /// Whoever forgets what is farther than a radius forgets that cell too if the radius and the
-  /// cell's distance together are less than the height; one cell of each is rounding.
+  /// Height of the window, its smallest side. Tags wrap around: a cell more than half of the height
+  /// above the middle seems to lie below it, at a distance of the height less its own. A map that
+  /// forgets cells beyond a radius forgets it all the same, if its distance and the radius together
+  /// are less than kSafeLevels. The two cells in between are for rounding.
   static constexpr std::int32_t kLevels = 1024;
   static constexpr std::int32_t kSafeLevels = kLevels - 2;
 
@@ -37,8 +37,8 @@ class CellTable {
   explicit CellTable(std::size_t capacity)
       : mask_(std::bit_ceil(2 * capacity) - 1), slots_(mask_ + 1) {}
 
-  /// Where the search for a cell begins. 4 x 4 cells of a level lie side by side, and after them
-  /// those above: who looks around a cell, or for features beside each other, mostly reads the same
+  /// Where the search for a cell begins. 4 x 4 cells of a level lie side by side, and those above
+  /// come next. So a search around a cell, or for features beside each other, mostly reads the same
   /// few cache lines.
   [[nodiscard]] std::size_t bucket_of(const CellIndex& i) const {
     constexpr std::int32_t kInside = (1 << kBlockBits) - 1;
@@ -99,10 +99,9 @@ class CellTable {
     }
     slots_[hole] = Slot{};
   }
-  /// Empties the slots from there to the next empty one. Done from the bucket of every cell there
-  /// is, in any order, it empties the table: what it leaves of a row of slots is the beginning, and
-  /// a cell that is still in it has its bucket there too. Where cells are few, that is far less
-  /// than the whole table.
+  /// Empties the slots from there to the next empty one. Called with the bucket of every cell, in
+  /// any order, it empties the table: a cell that an earlier call left is before the bucket of that
+  /// call, and so is its own bucket. With few cells that is far less than the whole table.
   void clear_from(std::size_t bucket) {
     for (; slots_[bucket].at != kNone; bucket = after(bucket)) slots_[bucket] = Slot{};
   }
@@ -111,10 +110,10 @@ class CellTable {
   [[nodiscard]] std::size_t after(std::size_t slot) const { return (slot + 1) & mask_; }
 
  private:
-  // Of a tag, from the lowest: x, y, and how high the cell lies.
+  // Bits of a tag, from the lowest: x, y and z.
   static constexpr int kAcrossBits = 11, kLevelBits = 10;
   static_assert(kLevels == 1 << kLevelBits && kLevelBits < kAcrossBits);
-  // How many cells lie side by side.
+  // 1 << kBlockBits cells in x and in y lie side by side.
   static constexpr int kBlockBits = 2;
   static constexpr std::size_t kLevelSlots = 1U << (2 * kBlockBits);
 

@@ -20,15 +20,14 @@ namespace lilo::core {
 /// Memory is reserved at construction. Not thread-safe.
 class LocalMaps {
  public:
-  /// Half cells, cells and coarse cells. Half cells are used where the surroundings are narrow
-  /// (rooms, stairs, the inside of a garage): over three whole ones walls, doors and furniture blur
-  /// into one another.
+  /// Half cells, whole cells and coarse cells. Half cells are used in rooms, on stairs and in
+  /// garages, where three whole cells blur walls, doors and furniture into one another.
   static constexpr std::size_t kLevels = 3;
   static constexpr std::size_t kHalf = 0, kWhole = 1, kCoarse = 2;
   using PerLevel = std::array<std::int32_t, kLevels>;
   static constexpr PerLevel kNoCells{CellMap::kNone, CellMap::kNone, CellMap::kNone};
 
-  /// `configs`: of a level's ground map, then of its structure map.
+  /// `configs`: of each level the ground map, then the structure map.
   explicit LocalMaps(const std::array<std::array<CellMapConfig, 2>, kLevels>& configs);
 
   [[nodiscard]] CellMap& at(std::size_t level, FeatureKind kind) {
@@ -38,8 +37,8 @@ class LocalMaps {
     return levels_[level][static_cast<std::size_t>(kind)];
   }
 
-  /// Adds features, their points and reaches in the odometry frame, to `finest` and all coarser
-  /// levels.
+  /// Adds features to the level `finest` and to all coarser ones. Points and gaps are in the
+  /// odometry frame.
   struct Point {
     Eigen::Vector3d point_m;
     Eigen::Vector3f gap_m;
@@ -54,7 +53,7 @@ class LocalMaps {
   void clear();
   [[nodiscard]] int size() const;               ///< cells
   [[nodiscard]] std::uint64_t refused() const;  ///< points that found no room
-  /// The mean of every cell of the usual size (m, odometry frame), in no particular order.
+  /// The mean of every whole cell (m, odometry frame), in no particular order.
   template <typename Visit>
   void for_each_mean(const Visit& visit) const {
     for (const CellMap& map : levels_[kWhole]) map.for_each_mean(visit);

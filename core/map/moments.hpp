@@ -5,7 +5,7 @@
 
 #include <array>
 
-/// Sums over points, of which their mean and covariance are made.
+/// Sums over points, which give their mean and covariance.
 namespace lilo::core {
 
 /// Symmetric 3x3 matrix: xx xy xz yy yz zz.
@@ -24,8 +24,8 @@ inline Symmetric outer(const Eigen::Vector3f& v) {
   return o;
 }
 
-/// How many points; the sums of x y z; and those of xx xy xz yy yz zz. One array, so that four are
-/// summed at a time.
+/// The number of points, the sums of x y z and those of xx xy xz yy yz zz. They are one array, so
+/// that the compiler sums four at a time.
 using Moments = std::array<float, 1 + 3 + 6>;
 
 inline float count_of(const Moments& m) { return m[0]; }
@@ -36,7 +36,7 @@ inline Eigen::Map<const Symmetric> squares_of(const Moments& m) {
   return Eigen::Map<const Symmetric>(&m[4]);
 }
 
-/// What one point adds that stands for a surface around it, of the covariance `spread` * `around`.
+/// The sums of one point that stands for a surface around it with covariance `spread` * `around`.
 inline Moments moments_of(const Eigen::Vector3f& point, float spread, const Symmetric& around) {
   const std::array<float, 4> p{1.0F, point.x(), point.y(), point.z()};
   Moments m{p[0],        p[1],        p[2],        p[3],        p[1] * p[1],
