@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-/// What is known of a scan's motion before its returns are used: it continues that of the last
-/// scan, with white noise on acceleration (Barfoot, State Estimation for Robotics, ch. 11).
+/// What is known of a scan's motion before its returns are used: it continues the motion of the
+/// last scan, with white noise on acceleration (Barfoot, State Estimation for Robotics, ch. 11).
 ///
 /// Process noise enters here and nowhere else. ProcessNoise estimates its density from the motion
 /// found; predict() puts that into a Prior; the solver takes add_prior(), which inflates it where
@@ -30,9 +30,8 @@ struct Prior {
   bool has_heavy_tails = true;  ///< an innovation inflates the process noise
 };
 
-/// Roll and pitch share their process noise, and so do the two axes of the ground plane; yaw and
-/// height have their own. Every axis (rotation, translation) gets the mean over those it shares
-/// with.
+/// The mean over the axes (rotation, translation) that share their process noise. Roll and pitch
+/// share one, and so do the two axes of the ground plane; yaw and height have their own.
 Vector6d mean_by_kind(const Vector6d& of_axes);
 
 /// Adds the prior to the normal equations H step = b of the deviation `x`. Its process noise is
@@ -40,13 +39,12 @@ Vector6d mean_by_kind(const Vector6d& of_axes);
 void add_prior(const Prior& prior, const Unknowns& x, NormalMatrix& H, Unknowns& b);
 
 /// Normalised innovation squared of the motion `x`: how far it departs from a constant velocity, as
-/// a mean square in sigmas of the prior, the same for all axes of a kind. 1 where the prior is
-/// right, or less: residuals count for less than they say.
+/// a mean square in sigmas of the prior, the same for axes that share their process noise. Where
+/// the prior is right it is 1 or, since the weight of residuals is reduced, less.
 Vector6d normalised_innovation(const Prior& prior, const Unknowns& x);
 
 /// The prior with its process noise inflated until such an innovation is no more than expected.
-/// That is a prior with heavy tails: a motion that it did not expect is followed within the same
-/// scan.
+/// That makes it a prior with heavy tails: an unexpected motion is followed within the same scan.
 Prior inflated(Prior prior, const Vector6d& innovation);
 
 /// Information of the change between two knots `dt_s` apart under white noise on acceleration:
@@ -56,10 +54,9 @@ KnotInformation process_information(const Vector6d& acceleration_density, double
 /// Information of the pose at the end of a scan whose beginning is known exactly.
 Matrix6d motion_information(const Prior& prior);
 
-/// How many segments of a span leave a motion of such a process noise no more than 1 mrad, 1 sigma,
-/// between its knots: between two that are known, white noise of density q on acceleration leaves a
-/// variance of q dt^3 / 192 in the middle. At least `least`, at most
-/// motion::kMaxSegments.
+/// The number of segments in a span: as many as keep the motion between two knots certain to
+/// motion::kKnotMotion_rad (1 sigma). Halfway between two known knots, white noise of density q on
+/// acceleration leaves a variance of q dt^3 / 192. At least `least`, at most motion::kMaxSegments.
 int segments_for(const Vector6d& acceleration_density, double span_s, int least);
 
 /// The information of a knot left after `dt_s` without data.

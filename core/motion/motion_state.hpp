@@ -9,27 +9,26 @@
 
 namespace lilo::core {
 
-/// What is known before the first scan: the pose is the origin by definition; of the motion, that
-/// vehicles go fast along the ground and turn about the vertical, and do little else.
+/// What is known before the first scan. The pose is the origin by definition. Vehicles go fast
+/// along the ground and turn about the vertical, and hardly move otherwise.
 KnotInformation initial_information();
 
 /// What is known of the sensor's motion at the last firing of a scan.
 struct MotionState {
-  Pose T_odom_sensor;                                   ///< from where the map in force was begun
+  Pose T_odom_sensor;                                   ///< from where the map was begun
   Twist twist;                                          ///< in the sensor's frame
   KnotInformation information = initial_information();  ///< of the pose and its rate
   std::optional<std::int64_t> end_ns;  ///< of that firing; none before the first scan
 };
 
-/// What the motion before a scan says of the motion during it: constant velocity, with
-/// `density` as the power density of the acceleration's white noise (ProcessNoise::density()), in
-/// as many segments as that asks for, at least `least_segments`.
+/// The prior of a scan after a known state: constant velocity with white noise on acceleration of
+/// power density `density` (ProcessNoise::density()), in as many segments as segments_for() says.
 Prior predict(const MotionState& state, const ScanTiming& scan, const Vector6d& density,
               int least_segments);
 
-/// The pose of the last firing by the prediction alone.
+/// The predicted pose of the last firing.
 Pose predicted_end(const Prior& prior);
-/// The state after a scan of which nothing but the prediction is known.
+/// The predicted state after the scan.
 MotionState predicted_state(const Prior& prior, std::int64_t end_ns);
 
 }  // namespace lilo::core

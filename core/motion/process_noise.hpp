@@ -11,10 +11,10 @@ namespace lilo::core {
 ///
 /// Under white noise of density q on acceleration, the mean velocities over two adjacent intervals
 /// of length T differ by a variance of 2/3 q T. The intervals run from the middle of one scan to
-/// the middle of the next: the middle is held by returns from all around, the end by those of one
-/// side only, and what misleads those misleads the beginning of the next scan, which looks the same
-/// way, as well. So the motion within a scan gets the freedom that the motion from scan to scan
-/// asks for: none on a smooth road, much on a shaking mast.
+/// the middle of the next, because returns from all around hold the middle. Returns of one side
+/// hold the end of a scan, and the same errors mislead the beginning of the next scan, which looks
+/// the same way. So the motion within a scan gets as much freedom as the motion from scan to scan
+/// shows: little on a smooth road, much on a shaking mast.
 ///
 /// Not thread-safe; no allocation.
 class ProcessNoise {
@@ -23,11 +23,11 @@ class ProcessNoise {
   /// estimate begins there and never falls below.
   explicit ProcessNoise(const Vector6d& nominal) : nominal_(nominal), density_(nominal) {}
 
-  /// The pose in the middle of a scan that was aligned, and the instant of it. `variance`: of the
-  /// pose by the scan's returns alone (rad^2, m^2). It makes velocities differ as well, and along a
-  /// tunnel is all that does. Where it is not finite the scan told nothing, and the estimate stays.
+  /// The pose in the middle of an aligned scan, and its instant. `variance`: of that pose by the
+  /// scan's returns alone (rad^2, m^2). It is subtracted, since it makes velocities differ as well;
+  /// along a tunnel nothing else does. If it is not finite the estimate stays.
   void observe(const Pose& T_middle, std::int64_t stamp_ns, const Vector6d& variance);
-  /// What comes next does not continue what was observed.
+  /// The next pose does not continue the motion observed so far.
   void interrupt() { observed_ = 0; }
 
   [[nodiscard]] const Vector6d& density() const { return density_; }

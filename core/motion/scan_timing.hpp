@@ -10,9 +10,9 @@ namespace lilo::core {
 /// When a scan was measured: its first and its last firing.
 struct ScanTiming {
   std::int64_t start_ns = 0, end_ns = 0;
-  bool motion_compensated = false;  ///< all returns belong to the last firing already
+  bool motion_compensated = false;  ///< as in Scan
 
-  /// First to last firing; that of 600 revolutions a minute where the stamps tell none.
+  /// From the first to the last firing; motion::kNominalSpan_s where the stamps tell none.
   [[nodiscard]] double span_s() const {
     const double span_s = 1e-9 * static_cast<double>(end_ns - start_ns);
     return span_s > 0.0 ? span_s : motion::kNominalSpan_s;

@@ -49,7 +49,7 @@ KnotWeights weights_at(double s, int segments, double span_s);
 /// The pose after `dt_s` at constant twist.
 Pose moved(const Pose& T, const Twist& twist, double dt_s);
 
-/// The twist that takes `a` to `b` in `dt_s`, in the frame of `a`.
+/// The constant twist from `a` to `b` in `dt_s`, in the frame of `a`.
 Twist twist_between(const Pose& a, const Pose& b, double dt_s);
 
 /// The trajectory at evenly spaced instants, laid out for the point loop. Rotation is taken from
@@ -61,8 +61,8 @@ struct Sampled {
   AtInstants<Eigen::Vector3d> translation_m;
   AtInstants<Eigen::Vector3d> velocity;  ///< change of translation per unit of s
 
-  /// A point of the sensor's frame at the part `s` of the scan, turned into the odometry's axes,
-  /// and where its origin is.
+  /// A point of the sensor's frame at the part `s` of the scan, turned into the odometry's axes;
+  /// and the origin of that frame.
   [[nodiscard]] Eigen::Vector3f turn(float s, const Eigen::Vector3f& p) const {
     return rotation[instant_of(s)] * p;
   }

@@ -28,36 +28,36 @@ struct SolverConfig {
 struct Solution {
   Trajectory trajectory;
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
-  /// Of the pose, from the scan alone, as though its residuals were independent.
+  /// Of the pose by the scan alone, as though its residuals were independent.
   Matrix6d data_information = Matrix6d::Zero();
-  /// Of the pose, from a motion known exactly until the scan began.
+  /// Of the pose at the end by the motion alone, had it been known exactly until the scan began.
   Matrix6d motion_information = Matrix6d::Zero();
-  /// Variance of the pose over that of independent residuals of one sigma; by axis.
+  /// Variance of the pose over that by independent residuals of one sigma; by axis.
   Vector6d design_effect = Vector6d::Zero();
   int looked_up = 0;             ///< features looked up
   int matched = 0;               ///< features that found a distribution
   double inliers = 0;            ///< sum of robust weights
-  double structure_inliers = 0;  ///< of them what is not ground
+  double structure_inliers = 0;  ///< the same of structure alone
   double mean_square = 0.0;      ///< weighted mean of squared residuals in sigmas
   int iterations = 0;
   bool converged = false;
 };
 
-/// What residuals sum up to, for a pose (rotation, translation): of the symmetric J'OJ the block of
-/// the rotation (xx xy xz yy yz zz), the one beside it row by row, and that of the translation;
-/// then -J'Or.
+/// Sums over residuals, for a pose (rotation, translation): of the symmetric matrix J'OJ the block
+/// of the rotation (xx xy xz yy yz zz), the block beside it row by row, and the block of the
+/// translation; then -J'Or.
 using ResidualSums = Eigen::Matrix<double, 6 + 9 + 6 + 6, 1>;
 
 /// Aligns features with the maps. Keeps its working memory between calls.
 class Solver {
  public:
-  /// `most_features`: of one solve(), for which memory is reserved.
+  /// Reserves memory for `most_features` in one solve().
   Solver(const SolverConfig& config, std::size_t most_features) : config_(config) {
     cached_cells_.reserve(most_features);
   }
-  /// The prediction, as though nothing had matched.
+  /// The prediction as a solution in which nothing matched.
   [[nodiscard]] Solution unaligned(const Prior& prior) const;
-  /// `finest`: level of the maps to begin with once the solution is near.
+  /// `finest`: the finest level of the maps, used once the solution is near.
   Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
                  std::size_t finest = LocalMaps::kWhole);
 

@@ -18,8 +18,8 @@
 
 namespace lilo::core {
 
-/// When the sensor did other than predicted: it turned and moved while it was unseen, so that the
-/// whole scan is displaced; or it began to turn within this scan.
+/// When the sensor departed from the prediction: before the scan, while it was unseen, so that the
+/// whole scan is displaced; or within the scan, in which it began to turn.
 enum class Onset : std::uint8_t { before_scan, within_scan };
 
 /// How far a displacement may go, to either side.
@@ -28,17 +28,18 @@ struct SearchRadius {
   double begin_yaw_rad = 0.0;  ///< for Onset::within_scan
 };
 
-/// Where in the map the sensor may be, when nothing told for a while how it moved.
+/// Searches where in the map the sensor may be, after a while without an alignment.
 ///
-/// Scan and map are seen from above: where the sensor is, the scan's structure falls on that of the
-/// map. Displacements all over the radius are scored on a map drawn thick, and those around the
-/// best of them on one drawn finer, with a quarter of the points. What is found is for alignments
-/// to begin from: of two walls that are alike, either may be right.
+/// Scan and map are laid over each other on a top-down grid. At the true place the structure of the
+/// scan falls on that of the map. All displacements within the radius are scored on a map drawn
+/// thick; the best of them are refined on a thinner one. A quarter of the points is used. The
+/// places found are for alignments to begin from: of two walls that look alike, either may be
+/// right.
 ///
 /// Not thread-safe; no allocation after construction.
 class DisplacementSearch {
  public:
-  /// Any turn, and as far as a vehicle may depart from its prediction in the longest gap.
+  /// Any yaw, and as far as a vehicle may depart from its prediction in the longest gap.
   static inline const SearchRadius kFarthest{
       0.5 * search::kMostAcceleration_mps2 * motion::kLongestGap_s * motion::kLongestGap_s,
       std::numbers::pi, 0.0};
@@ -46,11 +47,12 @@ class DisplacementSearch {
   /// `most_features`: of one scan.
   explicit DisplacementSearch(std::size_t most_features);
 
-  /// The structure within 128 m of `center_m` along either axis; of its coarse cells.
+  /// Draws the map: the structure within 128 m of `center_m` along either axis. Its coarse cells
+  /// are enough.
   void set_map(const CellMap& structure, const Eigen::Vector3d& center_m);
 
-  /// The likeliest displacements from where the scan was predicted to be, the best one first, all
-  /// unlike each other. Farther than kFarthest none is searched. Lives until the next call.
+  /// The most likely displacements from the predicted place, the best one first, no two of them
+  /// alike, none farther than kFarthest. The result lives until the next call.
   std::span<const Displacement> find(const std::vector<Feature>& features,
                                      const Trajectory& predicted, const SearchRadius& radius,
                                      Onset onset = Onset::before_scan);

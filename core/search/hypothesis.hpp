@@ -8,28 +8,28 @@
 #include <cmath>
 #include <vector>
 
-/// What the searches for the initial motion, for a false motion and for a lost place share: a
-/// displacement in the ground plane is supposed, scored on a grid seen from above, and taken when
-/// its score is significantly better than that of the others.
+/// Shared by the searches for the initial motion, for a false motion and for a lost place. Each
+/// scores displacements in the ground plane on a top-down grid, and takes one whose score is
+/// significantly better than that of the others.
 namespace lilo::core {
 
-/// A supposed motion besides a known one: along the ground and about the vertical, in the
-/// odometry's axes. Where it is searched over time, of one second.
+/// A motion to be tested, added to a known one: along the ground and about the vertical, in the
+/// odometry's axes. MotionSearch and MotionCheck mean the displacement in one second.
 struct Displacement {
   Eigen::Vector2d along_m = Eigen::Vector2d::Zero();
   double yaw_rad = 0.0;        ///< of the last firing
-  double begin_yaw_rad = 0.0;  ///< of the first; in between it changes evenly
+  double begin_yaw_rad = 0.0;  ///< of the first; between the two it changes evenly
 };
 
-/// `score` counts what agrees: returns that fall on the map, or cells that scans have in common.
+/// `score`: how many returns fall on the map, or how many cells the scans have in common.
 struct Hypothesis {
   Displacement by;
   int score = 0;
 };
 inline bool has_lower_score(const Hypothesis& a, const Hypothesis& b) { return a.score < b.score; }
 
-/// Whether one count is larger than another by more than chance brings: the difference of two
-/// counts has the variance of their sum (Poisson).
+/// Whether one count is larger than another beyond chance. The difference of two counts has the
+/// variance of their sum (Poisson).
 inline bool is_significant(double count, double other, double sigmas) {
   return count - other > sigmas * std::sqrt(count + other);
 }

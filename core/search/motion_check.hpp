@@ -16,11 +16,11 @@ namespace lilo::core {
 
 /// Whether the last scans agree better under another motion than the one tracked.
 ///
-/// Where little structure is beside the road, one truck ahead tells more of the way along it than
-/// all posts together. When it drives off with the sensor, or without it, the alignment may follow
-/// the truck: what the truck tells fits, and the posts count as moving. But laid over each other as
-/// they were tracked, the scans of half a second then show a trail of everything that is fixed, and
-/// share more cells under another motion, along the road.
+/// Where little structure stands beside a road, a truck ahead has more features that tell the
+/// motion along the road than all posts together. The alignment may then follow the truck: the
+/// truck fits, and the posts count as moving. But if the scans of the last half second are laid
+/// over each other as they were tracked, everything that is fixed leaves a trail, and the scans
+/// share more cells under another motion along the road.
 ///
 /// Not thread-safe; no allocation after construction.
 class MotionCheck {
@@ -29,11 +29,11 @@ class MotionCheck {
   explicit MotionCheck(std::size_t most_features);
 
   void clear();
-  /// The next scan as it was tracked. Where returns were compensated, both poses are the last one.
+  /// The next scan as it was tracked. If its returns were compensated, both poses are the last one.
   void add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
            const ScanTiming& timing);
-  /// Once after each add(). Whether another motion was significantly better, now and the last time.
-  /// `axis`: horizontal unit vector along what surrounds the sensor, or across it.
+  /// To be called once after each add(). Whether another motion was significantly better both now
+  /// and the last time. `axis`: horizontal unit vector along or across the surroundings.
   bool is_refuted(const Eigen::Vector2d& axis);
 
  private:

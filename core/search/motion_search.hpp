@@ -15,9 +15,9 @@
 
 namespace lilo::core {
 
-/// The constant motion under which a few scans agree best. It needs neither a map nor an initial
-/// guess: all motions that a vehicle may have along the ground are tried, and under the true one
-/// the structure of all scans shares the most cells.
+/// Searches the constant motion under which a few scans agree best. It needs neither a map nor an
+/// initial guess: it tries all motions that a vehicle may have along the ground. Under the true one
+/// the structure of the scans shares the most cells.
 ///
 /// Not thread-safe; no allocation after construction.
 class MotionSearch {
@@ -40,11 +40,11 @@ class MotionSearch {
   /// The next scan, at most search::kMotionScans.
   void add(const ScanTiming& timing, const std::vector<Feature>& features);
 
-  /// Stationary, unless another motion is significantly better.
+  /// The motion found: stationary, unless another one is significantly better.
   Result find();
   /// The best motion around one that is nearly right.
   Twist refine(const Twist& about, Subsample subsample);
-  /// Whether the scans, all of them, probably moved so rather than as they were tracked.
+  /// Whether this motion explains all scans probably better than their tracks do.
   bool is_better_than_track(const Twist& twist, std::span<const Track> tracks);
 
  private:
@@ -65,12 +65,13 @@ class MotionSearch {
 
   std::array<Scan, search::kMotionScans> scans_;
   std::size_t count_ = 0;
-  std::array<int, 2> alone_{};  // by Subsample: cells that the scans occupy each for itself
+  std::array<int, 2> alone_{};  // by Subsample: sum of the cells that each scan alone occupies
   TopDownGrid grid_;
   std::vector<Hypothesis> hypotheses_;
 };
 
-/// Whether two motions are farther apart than this, or their yaw rates than what moves as far.
+/// Whether two motions differ by more than `mps`, or their yaw rates by as much in effect
+/// (search::kYawPerSpeed_radpm).
 bool differ(const Twist& a, const Twist& b, double mps);
 
 }  // namespace lilo::core

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-/// How well scans agree with each other, or with the map, under a motion that is only supposed.
+/// How well scans agree with each other, or with the map, under a hypothesis of the motion.
 namespace lilo::core {
 
 /// The structure features of a scan, each in the sensor's frame at its firing. An array per
@@ -26,18 +26,18 @@ struct StructurePoints {
   void assign(const std::vector<Feature>& features);
 };
 
-/// How many of the points are used. Where motions differ clearly, a quarter tells.
+/// How many of the points are used. A quarter is enough to tell motions apart that differ clearly.
 enum class Subsample : std::uint8_t { quarter, all };
 
-/// Structure points turned to the axes of the odometry and seen from above, in cells from the
-/// sensor. Motions that differ in speed alone share them.
+/// Structure points in the axes of the odometry, seen from above, in cells from the sensor. Motions
+/// that differ in speed alone share them.
 struct TopDownPoints {
   std::vector<float> x, y;
   std::vector<float> s;  ///< as Feature::s
 
   void reserve(std::size_t size);
-  /// Of a scan in which the sensor turned from `begin` to `end`. Points outside the subsample keep
-  /// the places they had.
+  /// Of a scan in which the sensor turned from `begin` to `end`. Points outside the subsample are
+  /// left as they were.
   void assign(const StructurePoints& scan, const Eigen::Quaterniond& begin,
               const Eigen::Quaterniond& end, Subsample subsample = Subsample::all);
   /// The same for a sensor that may turn fast: each point by the rotation at its firing.
@@ -45,27 +45,27 @@ struct TopDownPoints {
                       const Eigen::Quaterniond& end, Subsample subsample);
 };
 
-/// A square grid of 256 m seen from above, on which scans are laid as a motion says. Trunks and
-/// walls of several scans share cells under the true motion and smear under any other. Needs
-/// neither a map nor an initial guess, and hardly depends on how many rings hit a thing.
+/// A square grid of 256 m seen from above, on which scans are laid under a motion. Trunks and walls
+/// of several scans share cells under the true motion and smear under any other. It needs neither a
+/// map nor an initial guess, and hardly depends on how many rings hit an object.
 ///
 /// Not thread-safe; no allocation after construction.
 class TopDownGrid {
  public:
-  /// `most`: points of one scan.
+  /// `most`: the most points of one scan.
   explicit TopDownGrid(std::size_t most);
 
   /// Cells occupied by all scans added since clear().
   [[nodiscard]] int occupied() const { return occupied_; }
   void clear();
 
-  /// Adds one scan that lasted from `begin_m` to `end_m`, at constant velocity. What lies 128 m, to
-  /// a cell, from the origin along an axis is left out, and so are more than `most` points.
+  /// Adds one scan during which the sensor moved from `begin_m` to `end_m` at constant velocity.
+  /// Points outside the grid are left out, and so are more than `most` points.
   void add(const TopDownPoints& scan, const Eigen::Vector2d& begin_m, const Eigen::Vector2d& end_m,
            Subsample subsample = Subsample::all);
   /// Adds one point, and all cells within `around` of its own.
   void add(const Eigen::Vector2d& point_m, int around);
-  /// Remembers where the points of a scan fall, but for those within `margin` cells of the end.
+  /// Remembers where the points of a scan fall, except within `margin` cells of the border.
   void place(const TopDownPoints& scan, const Eigen::Vector2d& begin_m,
              const Eigen::Vector2d& end_m, Subsample subsample, int margin);
   /// How many of the points placed fall on occupied cells, moved by so many cells, at most
@@ -75,8 +75,8 @@ class TopDownGrid {
  private:
   std::vector<std::int32_t> at_;
   std::size_t placed_ = 0;  // how many of them place() remembered
-  // Of each cell, at which count of clear() it was last taken up. Nothing need be emptied so, and
-  // no cell waits for what was just written of its neighbour, as bits of one word would.
+  // Of each cell, the count of clear() at which it was last occupied. So clear() need not empty the
+  // cells, and no cell waits for a write to its neighbour, as the bits of one word would.
   std::vector<std::uint8_t> taken_;
   std::uint8_t now_ = 0;
   int occupied_ = 0;

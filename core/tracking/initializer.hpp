@@ -12,12 +12,13 @@
 
 namespace lilo::core {
 
-/// Finds the motion that the sensor is in when a map is begun.
+/// Finds the initial motion of the sensor when a map is begun.
 ///
-/// One scan alone tells no motion, and is bent by it. Two scans mostly tell (MotionSearch): the
-/// motion under which they agree best is refined by aligning the second with the first until the
-/// motion found is the motion assumed. Where another motion fits nearly as well (a road with few
-/// things beside it), more scans are asked, and the map is begun again where they contradict:
+/// One scan alone does not tell the motion, and is distorted by it. Two scans mostly do:
+/// MotionSearch finds the motion under which they agree best. It is refined by aligning the second
+/// scan with the first, until the motion found is the motion assumed. Where another motion fits
+/// nearly as well, as on a road with little beside it, more scans decide, and the map is begun
+/// again if they contradict:
 ///
 ///     1st scan      becomes the map
 ///     2nd           motion searched and refined; stationary or moving, clear or not
@@ -30,27 +31,27 @@ class Initializer {
   /// `most_features`: of one scan that is aligned; `most_for_map`: of one that enters the map.
   Initializer(std::size_t most_features, std::size_t most_for_map);
 
-  /// Scans remembered, the newest included. 0 before the first and when the motion is known.
+  /// Scans remembered, including the newest. 0 before the first one and once the motion is known.
   [[nodiscard]] std::size_t scans() const { return count_; }
   /// Whether the sensor is assumed stationary since the second scan, which is believed at once.
   [[nodiscard]] bool assumes_stationary() const { return assumes_stationary_; }
 
-  /// Whether the scans remembered are no basis for this next one: it saw far more than the first,
-  /// which was a fragment, or it comes too late.
+  /// Whether the next scan cannot continue the scans remembered: it saw far more than the first
+  /// one, which was a fragment, or it comes too late.
   [[nodiscard]] bool must_begin_again(const ScanTiming& scan, std::size_t feature_count,
                                       const MotionState& state) const;
   void clear();
 
-  /// Takes the next scan, before it is aligned, and puts `local` on another motion where all
-  /// scans speak for one. `all`: its features before selection. `was_lost`: the scan before found
-  /// nothing of itself in the map. Returns whether the motion is known now; then the scans are
-  /// forgotten, and this one can be aligned like any other.
+  /// Takes the next scan before it is aligned. Begins the map again with another motion, if all
+  /// scans agree better under it. `all`: the features before selection. `was_lost`: the scan before
+  /// was not found in the map. Returns whether the motion is known now: then the scans are
+  /// forgotten, and this one can be aligned like any later one.
   bool add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
            LocalOdometry& local);
   /// Aligns the second scan, after add(). `may_be_stationary`: the sensor may be assumed
   /// stationary, as one that was just switched on.
   Solution align_second(bool may_be_stationary, LocalOdometry& local);
-  /// Where the newest scan was tracked.
+  /// The poses at which the newest scan was tracked.
   void set_track(const Pose& T_begin, const Pose& T_end);
 
  private:
@@ -60,7 +61,7 @@ class Initializer {
     std::vector<Feature> for_map, selected;
     std::size_t finest_level = LocalMaps::kWhole;  ///< of the map
   };
-  /// A motion the sensor may have, and what is believed of its speed along the ground.
+  /// A motion to begin with, and the prior of its speed along the ground.
   struct Start {
     Twist twist;  ///< as refined so far
     Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();

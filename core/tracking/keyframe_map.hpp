@@ -14,10 +14,10 @@
 
 namespace lilo::core {
 
-/// What a scan is to the map.
+/// How the map may use a scan.
 enum class MapUse : std::uint8_t {
   none,      ///< it was not aligned
-  end_only,  ///< aligned, but perhaps wrongly: it tells where the scan before it ended
+  end_only,  ///< aligned, but perhaps wrongly: only to correct the end of the scan before it
   keyframe,  ///< it may enter the map
 };
 
@@ -28,14 +28,14 @@ struct AlignedScan {
   const Solution& solution;
   Pose T_odom_sensor;  ///< of its last firing
   MapUse use = MapUse::keyframe;
-  std::size_t finest_level = LocalMaps::kWhole;  ///< of the map, for its surroundings
-  bool with_overhead = true;                     ///< what is_overhead() enters the map as well
+  std::size_t finest_level = LocalMaps::kWhole;  ///< as in Observation
+  bool with_overhead = true;                     ///< features that are is_overhead() enter too
 };
 
-/// The local map and how it grows: by keyframes, which enter one scan late. The end of a scan is
-/// seen from one side only; the next scan sees it from the other and puts it right before its
-/// points enter the map. The first five enter at once: a young map cannot wait. It forgets what is
-/// far away.
+/// The local map and how it grows: by keyframes, which enter it one scan late. A scan sees its own
+/// end from one side only. The next scan sees it from the other side and corrects it before its
+/// points enter the map. The first keyframes enter at once, since a young map cannot wait. Cells
+/// far away are forgotten.
 ///
 /// Not thread-safe; no allocation after construction.
 class KeyframeMap {
@@ -74,7 +74,7 @@ class KeyframeMap {
   LocalMaps cells_;
   Held held_;
   Sampled sampled_;                       // of the keyframe that is inserted
-  std::vector<LocalMaps::Point> points_;  // the same; none if the last scan inserted none
+  std::vector<LocalMaps::Point> points_;  // inserted after the last scan
   Pose T_odom_keyframe_;
   int keyframes_ = 0;
 };

@@ -16,11 +16,11 @@
 
 namespace lilo::core {
 
-/// Odometry on one local map, scan after scan: predict, align, accept, let the map grow. It follows
-/// whatever it is given; what is to be believed is decided above it, in Tracker, and Initializer
-/// takes it through the first scans again where they turn out to have moved otherwise.
+/// Odometry on one local map: predict, align, accept and grow the map, scan after scan. It decides
+/// nothing: Tracker decides which alignment is accepted, and Initializer repeats the first scans
+/// when their motion turns out to be another one.
 ///
-/// Poses are from where the map was begun. Not thread-safe; no allocation after construction.
+/// Poses count from where the map was begun. Not thread-safe; no allocation after construction.
 class LocalOdometry {
  public:
   /// `most_features`: of one scan.
@@ -33,7 +33,7 @@ class LocalOdometry {
   [[nodiscard]] Prior predict(const ScanTiming& scan) const {
     return core::predict(state_, scan, process_noise_.density(), least_segments_);
   }
-  /// `finest_level`: of the map, once the solution is near.
+  /// `finest_level`: as in Solver::solve().
   Solution align(const std::vector<Feature>& features, const Prior& prior,
                  std::size_t finest_level = LocalMaps::kWhole) {
     return solver_.solve(features, map_.cells(), prior, finest_level);
@@ -42,12 +42,12 @@ class LocalOdometry {
   /// better alignment is taken.
   Solution align_moving_or_stationary(const std::vector<Feature>& features, const Prior& prior,
                                       std::size_t finest_level);
-  /// The prediction as a solution of which nothing matched.
+  /// The prediction as a solution in which nothing matched.
   [[nodiscard]] Solution unaligned(const Prior& prior) const { return solver_.unaligned(prior); }
 
-  /// The sensor moved as a scan's solution says.
+  /// Moves the state to the end of a scan by its solution.
   void accept(const ScanTiming& scan, const Solution& solution);
-  /// Of a scan that could not be aligned the prediction is all that is known.
+  /// The same by the prediction, for a scan that could not be aligned.
   void accept_prediction(const ScanTiming& scan, const Prior& prior);
   /// The first scan of a map: its last firing is the origin.
   void accept_first(const ScanTiming& scan) { state_.end_ns = scan.end_ns; }
@@ -57,32 +57,33 @@ class LocalOdometry {
   [[nodiscard]] bool is_stationary() const { return stationary_.is_stationary(); }
   /// The sensor is assumed to be stationary where it is.
   void assume_stationary() { stationary_.assume(state_.T_odom_sensor); }
-  /// Finds what a scan that was accepted told too little of: there the motion is dead reckoned, and
-  /// the pose the less certain.
+  /// Finds the weak directions of a scan that was accepted. Along them the motion is dead reckoned,
+  /// and the covariance of the pose grows.
   WeakDirections find_weak_directions(const ScanTiming& scan, const Solution& solution);
   /// Learns how fast the motion changes, from a scan that was aligned (ProcessNoise).
   void observe_noise(const ScanTiming& scan, const Solution& solution);
-  /// What comes next does not continue the motion observed so far.
+  /// The next scan does not continue the motion observed so far.
   void interrupt_noise() { process_noise_.interrupt(); }
 
-  /// What the scan accepted last adds to the map, of all of its features.
+  /// Adds the scan accepted last to the map, with all of its features.
   void grow_map(const Observation& scan, const std::vector<Feature>& features,
                 const Solution& solution, MapUse use);
 
-  /// Gives the map up and begins another, at the end of its first scan. Returns where that is
-  /// predicted to be.
+  /// Gives the map up and begins another one, whose origin is the end of the scan `first`. Returns
+  /// the predicted pose of that end in the old map.
   Pose begin_map(const ScanTiming& first);
-  /// Back to the end of the first scan.
+  /// Goes back to the end of the first scan.
   void rewind(const ScanTiming& first);
-  /// Builds the map of one scan alone, deskewed by `trajectory`.
+  /// Makes the map of one scan alone, deskewed by `trajectory`.
   void begin_map_of(const std::vector<Feature>& features, const Trajectory& trajectory,
                     std::size_t finest_level) {
     map_.begin(features, trajectory, finest_level);
   }
 
  private:
-  /// An exceptional motion is taken only where it fits significantly better than a usual one: where
-  /// little of a scan matches, the heavy tails of the prior let it jump to a place like its own.
+  /// Takes an exceptional motion only if it fits significantly better than a usual one. Where
+  /// little of a scan matches, the heavy tails of the prior let it jump to a place that looks
+  /// alike.
   Solution align_moving(const std::vector<Feature>& features, const Prior& prior,
                         std::size_t finest_level);
   void move_to(const MotionState& state);

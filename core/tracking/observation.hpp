@@ -11,13 +11,13 @@
 
 namespace lilo::core {
 
-/// What the tracker looks at of one scan.
+/// What the tracker uses of one scan.
 struct Observation {
   ScanTiming timing;
   const std::vector<Feature>* features = nullptr;  ///< those selected for alignment
   double structure = 0.0;                          ///< how many of them are structure
   bool is_room = false;          ///< more than half of the structure is near, as in rooms
-  std::size_t finest_level = 0;  ///< of the map, which these surroundings ask for
+  std::size_t finest_level = 0;  ///< of the map: LocalMaps::kHalf in rooms and after a weak scan
   bool is_complete = false;      ///< Scan::complete
 
   [[nodiscard]] bool says_enough() const { return features->size() >= tracking::kMinFeatures; }

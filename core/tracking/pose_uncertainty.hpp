@@ -8,25 +8,26 @@
 
 namespace lilo::core {
 
-/// The covariance of the pose: that of the alignment with the map, scaled by how much residuals
-/// vary from azimuth to azimuth, and what the map has drifted. Rotation then translation.
+/// The covariance of the pose, rotation then translation. It is the covariance of the alignment
+/// with the map, scaled by how much residuals vary from azimuth to azimuth, plus that of the map's
+/// drift.
 class PoseUncertainty {
  public:
   /// `data_weight`: of a residual (SolverConfig).
   explicit PoseUncertainty(double data_weight) : data_weight_(data_weight) {}
 
-  /// Another map begins where the sensor is.
+  /// Another map is begun where the sensor is.
   void begin_map(const MotionState& state);
-  /// The map in force begins once more.
+  /// The same map is begun once more.
   void rewind() { drift_.rewind(); }
   /// A scan was aligned (Solution::design_effect).
   void learn(const Vector6d& design_effect);
-  /// What a scan of that duration told too little of (sensor's axes); `density`: process noise.
+  /// The weak directions (sensor's axes) of a scan that lasted `span_s`; `density`: process noise.
   void learn(const WeakDirections& weak, const MotionState& state, const Vector6d& density,
              double span_s);
   /// The sensor has moved on.
   void move(const Eigen::Vector3d& by_m) { drift_.move(by_m); }
-  /// The last scan has become a keyframe of a map of so many.
+  /// The last scan became a keyframe; the map has so many now.
   void add_keyframe(const MotionState& state, int keyframes);
 
   /// Of the pose since the first scan, in the sensor's axes.

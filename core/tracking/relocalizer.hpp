@@ -21,8 +21,8 @@ struct AlignmentHistory {
   bool is_doubtful = false;  ///< the last scan, aligned or not, fitted much less than usual
   StructureFit fit;          ///< the usual fit
 
-  /// From the last aligned scan to the beginning of this one. A clock that was set back says as
-  /// little as one that was set forward.
+  /// Time from the last aligned scan to the beginning of this one. A clock that was set back counts
+  /// like one that was set forward.
   [[nodiscard]] double unseen_s(const ScanTiming& scan) const {
     return std::abs(seconds_between(end_ns, scan.start_ns));
   }
@@ -30,10 +30,10 @@ struct AlignmentHistory {
 
 /// Finds the sensor in the map where an alignment from the prediction does not reach.
 ///
-/// After a second without the sensor the prediction may be off by metres and tens of degrees,
-/// farther than an alignment reaches, and yet some of the scan matches something. So all places
-/// within reach are searched (DisplacementSearch), the scan is aligned from the best of them, and
-/// one is taken only where significantly more of the structure fits than at any other.
+/// After a second without the sensor the prediction may be off by metres and tens of degrees. That
+/// is too far for an alignment, and yet some of the scan always matches. So DisplacementSearch
+/// tries all places that a vehicle can have reached, and the scan is aligned from the best of them.
+/// One alignment is taken, if significantly more of the structure fits than in any other.
 ///
 /// Not thread-safe; no allocation after construction.
 class Relocalizer {
@@ -41,15 +41,15 @@ class Relocalizer {
   /// `most_features`: of one scan.
   explicit Relocalizer(std::size_t most_features) : search_(most_features) {}
 
-  /// The best alignment within reach of the prediction; none where no place is clearly the best.
+  /// The best alignment around the prediction; none if no place is significantly the best.
   /// `at_prediction`: the alignment from the prediction itself.
   std::optional<Solution> find(const Observation& scan, const Prior& prior,
                                const Solution& at_prediction, const AlignmentHistory& history,
                                LocalOdometry& local);
 
-  /// Where `found`, the alignment from the prediction, fits far worse than usual, the sensor may
-  /// have begun to turn faster than it can follow: turns within the scan are searched, then those
-  /// that began within the last one, and taken where significantly more fits.
+  /// Follows an abrupt turn. If `found`, the alignment from the prediction, fits far worse than
+  /// usual, turns within the scan are searched, then turns that began within the last one. One is
+  /// taken if significantly more of the structure fits; else `found`.
   Solution follow_turn(const Solution& found, const Observation& scan, const Prior& prior,
                        const AlignmentHistory& history, LocalOdometry& local);
 
@@ -72,7 +72,7 @@ class Relocalizer {
   std::size_t attempt_count_ = 0;
 };
 
-/// Whether an alignment is beyond doubt where it was predicted to be.
+/// Whether an alignment is exactly where it was predicted, fits as usual and has no weak direction.
 bool is_in_place(const Solution& found, const Prior& prior, double relative_fit);
 
 }  // namespace lilo::core

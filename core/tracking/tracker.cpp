@@ -189,13 +189,13 @@ bool Tracker::is_refuted() {
 /// Ends the session where the map is of no more use.
 void Tracker::watch_session() {
   if (alignment_.is_explained) {
-    session_.scans_in_vain = 0;
+    session_.unexplained_scans = 0;
   } else if (scan_.says_enough()) {
-    ++session_.scans_in_vain;
+    ++session_.unexplained_scans;
   }
   const bool refuted = is_refuted();
   if (refuted) alignment_.status = TrackingStatus::lost;
-  session_.is_over = refuted || session_.scans_in_vain == tracking::kScansToGiveUp;
+  session_.is_over = refuted || session_.unexplained_scans == tracking::kScansToGiveUp;
 }
 
 Estimate Tracker::estimate(const Scan& scan) const {

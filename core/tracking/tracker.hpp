@@ -22,15 +22,16 @@ namespace lilo::core {
 /// What the tracker is doing:
 ///
 ///     starting -> tracking   the initial motion is known (Initializer: 4 to 6 scans)
-///     tracking -> lost       no scan was aligned for 0.35 s
+///     tracking -> lost       no scan was aligned for 0.35 s (motion::kShortGap_s)
 ///     lost     -> tracking   the sensor was found in the map (Relocalizer)
-///     starting -> starting   the first scans are no basis: a fragment, or too long ago
+///     starting -> starting   the first scans cannot be continued: a fragment, or too long ago
 ///
-/// and a new session is begun, with an empty map and `starting`, from
+/// A new session begins with an empty map and the phase `starting`, from
 ///
 ///     any        ten scans, each with enough features, were not explained by the map
-///     tracking   the motion was refuted (MotionCheck): the map may be bent
-///     lost       unseen for more than 2.5 s, unless the sensor stood or is exactly where predicted
+///     tracking   another motion explains the last scans better (MotionCheck)
+///     lost       no scan was aligned for 2.5 s (motion::kLongestGap_s), unless the sensor was
+///                stationary or is exactly where it was predicted
 enum class Phase : std::uint8_t { starting, tracking, lost };
 
 /// The default odometry: features of the image plane, their exact returns and firing times, aligned
@@ -50,19 +51,19 @@ class Tracker {
   [[nodiscard]] Phase phase() const { return phase_; }
 
  private:
-  /// What became of one scan.
+  /// The result of one scan.
   struct Alignment {
     Solution solution;
     TrackingStatus status = TrackingStatus::initializing;  ///< before weak directions are known
-    bool is_explained = true;                              ///< it may be right
+    bool is_explained = true;                              ///< it may be right (is_explained())
     WeakDirections weak;
   };
-  /// A map, from where its odometry counts.
+  /// One map and the place where it was begun.
   struct Session {
     Pose T_odom_start;
     std::uint32_t restarts = 0;
-    bool is_over = false;   ///< the next scan begins another
-    int scans_in_vain = 0;  ///< on end, that saw enough and found nothing of it in the map
+    bool is_over = false;       ///< the next scan begins another one
+    int unexplained_scans = 0;  ///< in a row, with enough features
   };
   void begin_session();
   void begin_map();
