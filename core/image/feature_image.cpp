@@ -148,8 +148,8 @@ void FeatureImage::find_edges(const ColumnView& g) {
     const float from_m = g.horizontal_m[k], to_m = g.horizontal_m[k + 1];
     const float dd = to_m - from_m, dz = g.z_m[k + 1] - g.z_m[k];
     const bool is_steep = std::abs(dz) > image::kSteepSlope * std::abs(dd);
-    // Rings are range * gap apart across the ray, and farther on what the ray grazes: by the ratio
-    // of flat to z, but not beyond the range.
+    // Across the ray, rings are range * gap apart. On a surface that the ray grazes they are
+    // farther apart, by the ratio of horizontal range to z, but never farther than the range.
     const float across_m = from_m * gap_rad_[k];
     const float grazing_m = is_steep ? from_m : std::max(std::abs(g.z_m[k]), across_m);
     const float reach_m2 = image::kSameSurface * across_m * from_m;
@@ -184,7 +184,7 @@ void FeatureImage::add_feature(const ColumnView& g, std::size_t ring,
   if (flat && steep) return;  // a kerb or the foot of a wall: neither
   const bool level = (edges_.level[below] | edges_.level[above]) != 0;
   if (flat && g.z_m[ring] >= 0.0F && !level) return;  // a canopy seen from below
-  // From the ground to the foot of a wall goes no surface.
+  // No surface goes from the ground to the foot of a wall.
   const bool foot_below = flat && edges_.steep[below - 1] != 0;
   const bool foot_above = flat && edges_.steep[above + 1] != 0;
   Feature f{g.x_m[ring],
@@ -212,8 +212,8 @@ void FeatureImage::set_sample_gap(const ColumnView& g, float to_lower2, float to
     f.dz_m = g.z_m[neighbour] - f.z_m;
     return;
   }
-  // Across the ray. Without it what is thin and level, a bridge far ahead or a rail, holds the ring
-  // that sees it at the height at which it was seen first, and with it the pitch.
+  // Across the ray. Without it a thin level object, such as a bridge far ahead or a rail, would
+  // hold the ring at the height at which it was seen first, and with it the pitch.
   const float horizontal_m = std::max(1e-3F, g.horizontal_m[ring]);
   const float gap = gap_rad_[ring];
   f.dx_m = -gap * f.z_m * f.x_m / horizontal_m;

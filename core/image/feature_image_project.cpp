@@ -58,8 +58,8 @@ void FeatureImage::project(std::span<const Return> returns) {
   }
 }
 
-/// Where there are more returns than pixels, a processor cannot foretell which ones are taken. So
-/// those whose pixel is free are listed first, without a branch.
+/// With more returns than pixels, a branch on a free pixel is hard to predict. So the returns whose
+/// pixel is free are listed first, without a branch.
 void FeatureImage::project_crowded(const Projector& projector, std::span<const Return> returns) {
   constexpr std::size_t kAtATime = 48;  // fewer than a firing has: hardly two are for one pixel
   std::array<std::uint32_t, kAtATime> at, columns;
@@ -83,7 +83,7 @@ void FeatureImage::project_crowded(const Projector& projector, std::span<const R
 void FeatureImage::note(int column) {
   if (sweep_.first_column < 0) sweep_.first_column = (column + margin_) % columns_;
   const int place = place_of(column);
-  // Or the column was looked at from the one beside it.
+  // The column itself was classified, or its neighbour was, which used it.
   if (place <= sweep_.classified && sweep_.classified > 0) sweep_.invalidated = true;
   if (place < columns_ - 2 * margin_ && place > sweep_.front) sweep_.front = place;
 }

@@ -46,8 +46,8 @@ bool Selection::take(std::uint64_t voxel) {
 }
 
 const std::vector<Feature>& Selection::choose(const std::vector<Feature>& all, bool with_overhead) {
-  // Too small a voxel fills the goal before the turn is over, as after a scan that saw little. Too
-  // large a one leaves little of what there is, as in the first scan of a narrow place.
+  // Too small a voxel, as after a scan that saw little, fills the goal before all features are
+  // visited. Too large a one, as in the first scan of a narrow place, leaves too few of them.
   for (int pass = 0; pass < image::kVoxelPasses && !take_evenly(all, with_overhead); ++pass) {
   }
   return chosen_;
@@ -159,7 +159,7 @@ void thin_out(const std::vector<Feature>& all, std::size_t most, Evenly evenly,
   for (const Feature& f : all) {
     if (n == most) break;
     if (!counts(f)) continue;
-    // A branch on it would be predicted wrongly half of the time.
+    // A branch would be predicted wrongly half of the time.
     float& parts = owed[f.ring];
     parts += in_image ? part : std::min(1.0F, range_of(f) * part_per_m);
     const bool due = parts >= 1.0F;

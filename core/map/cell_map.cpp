@@ -116,7 +116,7 @@ void CellMap::fit(Cell& cell) const {
   const float thin_m = map::kThinSpread * 3.0F * config_.cell_m;
   const float point_m = age < map::kYoungCell ? map::kYoungPoint_m : map::kPoint_m;
   const float doubt = config_.noise_m * config_.noise_m + point_m * point_m / count;
-  // Thin in two directions, a strip of ground may lean any way about its length.
+  // A strip of ground is thin in two directions, and could be tilted in any way about its length.
   if (config_.level && (solver.eigenvalues()[1] < thin_m * thin_m ||
                         std::abs(solver.eigenvectors()(2, 0)) < map::kUprightCosine)) {
     return;
@@ -154,7 +154,7 @@ void CellMap::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
   const Eigen::Vector3d rest_m = center_of(center) - center_m;
   const auto cell_m = static_cast<double>(config_.cell_m);
   for (std::size_t n = 0; n < share; ++n) {
-    // The tag tells where a cell is: to read each of them would take most of the time.
+    // The tag tells where a cell is; to read every cell would take most of the time.
     if (slots[sweep_].at != kNone) {
       const CellIndex from = CellTable::between(center_tag, slots[sweep_].tag);
       const Eigen::Vector3d from_m = cell_m * Eigen::Vector3d(from.x, from.y, from.z) + rest_m;

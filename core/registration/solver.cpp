@@ -14,7 +14,7 @@
 namespace lilo::core {
 namespace {
 
-/// Information of the last knot when the others are not asked: the Schur complement.
+/// Marginal information of the last knot: the Schur complement.
 KnotInformation marginal_of_last(const NormalMatrix& H) {
   const auto n = H.rows() - kKnotSize;
   const NormalMatrix rest = H.topLeftCorner(n, n);
@@ -58,7 +58,7 @@ std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t fi
   return n;
 }
 
-/// Where a level knows too little the next coarser one is asked.
+/// Where a level has no distribution, the next coarser one is used.
 void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest) {
   std::array<Correspondence*, kAtATime> unmatched;
   std::size_t n = 0;
@@ -158,9 +158,9 @@ Solver::Equations Solver::data_equations(const Prior& prior, Matrix6d& data_info
   return all;
 }
 
-/// Residuals that look the same way share what misleads them. The sums of a bin, as clusters, tell
-/// by how much that makes the pose less certain than independent residuals of one sigma would
-/// (Liang and Zeger, 1986). `step`: the last one, which the residuals have not seen yet.
+/// Residuals in one direction share their errors. The sums of the bins, taken as clusters, tell how
+/// much less certain that makes the pose than independent residuals of one sigma would (Liang and
+/// Zeger, 1986). `step`: the last one, which is not in the residuals yet.
 Vector6d Solver::design_effect(const Unknowns& step, const Prior& prior) const {
   Vector6d squares = Vector6d::Zero(), expected = Vector6d::Zero();
   for (int bin = 0; bin <= registration::kResidualInstants; ++bin) {
@@ -206,7 +206,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     const Vector6d end = step.segment<6>(n - kKnotSize);
     const double step_m = magnitude_m(end.head<3>(), end.tail<3>());
     solution.converged = stride == 1 && step_m < registration::kConvergedStep_m;
-    // A part of the features may lead the solution round in a circle: its steps grow no shorter.
+    // With a part of the features the solution may circle: its steps grow no shorter.
     if (step_m < registration::kNearStep_m || step_m >= last_step_m) stride = 1;
     last_step_m = step_m;
     // The last step is always taken with all features.

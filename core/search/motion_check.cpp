@@ -30,7 +30,7 @@ void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin,
   scan.end_ns = timing.end_ns;
 }
 
-/// As though the sensor had moved so much more in each second, seen from the end of the newest.
+/// As though the sensor had moved by so much more in each second, from the end of the newest scan.
 void MotionCheck::lay(const Scan& scan, const Displacement& more, Subsample subsample) {
   const Scan& newest = scans_[newest_];
   const double ago_s = seconds_between(scan.end_ns, newest.end_ns);
@@ -59,7 +59,7 @@ int MotionCheck::least_occupied(const Eigen::Vector2d& axis, Subsample subsample
 }
 
 bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
-  // What is clearly better with all points is, but for chance, better with a quarter of them too.
+  // A motion that is clearly better with all points is mostly better with a quarter of them too.
   if (least_occupied(axis, Subsample::quarter) >= occupied_under({}, Subsample::quarter)) {
     return false;
   }
@@ -71,9 +71,8 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
     lay(scan, {}, Subsample::all);
     alone += grid_.occupied();
   }
-  // Where scans hardly have cells in common, these tell nothing: all cells count as chance. The
-  // best of sixteen false motions is two sigmas better now and then where someone carries the
-  // sensor.
+  // Scans that hardly have cells in common tell nothing: then the number of all cells counts. The
+  // best of sixteen false motions is sometimes two sigmas better when someone carries the sensor.
   return is_significant(alone - least, alone - tracked, search::kPreferSigmas) &&
          tracked - least > search::kDropSigmas * std::sqrt(static_cast<double>(tracked));
 }

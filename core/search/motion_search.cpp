@@ -121,7 +121,8 @@ void MotionSearch::try_all() {
   }
 }
 
-/// Drops the motions that a quarter of the points speaks against, and scores the others with all.
+/// Drops the motions that are significantly worse with a quarter of the points, and scores the
+/// others with all points.
 void MotionSearch::keep_likely() {
   const int best = std::max_element(hypotheses_.begin(), hypotheses_.end(), has_lower_score)->score;
   std::erase_if(hypotheses_, [&](const Hypothesis& other) {

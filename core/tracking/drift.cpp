@@ -46,7 +46,7 @@ void Drift::coast(const Eigen::Matrix3d& axes, double acceleration_density, doub
   random_.bottomRightCorner<3, 3>() += variance * axes * axes.transpose();
 }
 
-// One scan that tells a little more than nothing does not give the velocity back.
+// One scan that tells little more than nothing does not restore the velocity.
 void Drift::see(double span_s) { coasted_s_ = std::max(0.0, coasted_s_ - span_s); }
 
 Matrix6d Drift::covariance() const {

@@ -36,7 +36,7 @@ bool Initializer::must_begin_again(const ScanTiming& scan, std::size_t feature_c
   // Half of a revolution: packets were lost, or the recording began in the middle of it. Or the
   // sensor was covered.
   if (feature_count > 2 * scans_[0].feature_count) return true;
-  // Long ago: only a stationary sensor may be supposed to have gone on as it did.
+  // Too long ago: only a stationary sensor surely went on as before.
   const double unseen_s = std::abs(seconds_between(*state.end_ns, scan.start_ns));
   return unseen_s > motion::kShortGap_s && (count_ == 1 || !assumes_stationary_);
 }
@@ -79,7 +79,7 @@ double Initializer::since_first_s(std::size_t k) const {
   return since_s > 0.0 ? since_s : static_cast<double>(k) * scans_[k].timing.span_s();
 }
 
-/// Adds what is believed of the speed along the ground to what the prediction knows of it.
+/// Adds the prior of the speed along the ground to the prediction.
 void Initializer::add_velocity_prior(const Start& start, Prior& prior) {
   const Eigen::Vector3d lack_mps =
       prior.T_begin.rotation * (start.velocity_mps - prior.twist.linear_mps);
@@ -113,15 +113,15 @@ Solution Initializer::try_start(const Start& start, LocalOdometry& local) {
   local.begin_map_of(scans_[0].for_map, first, scans_[0].finest_level);
   prior.twist = start.twist;
   prior.T_begin = moved({}, start.twist, since_first_s(1) - prior.span_s);
-  // However often it is refined, what was believed at first stays believed.
+  // The prior of the velocity stays that of the first round.
   add_velocity_prior(start, prior);
   return local.align(scans_[1].selected, prior);
 }
 
-/// Until the motion found is the motion assumed. What the first scan is deskewed by too much the
-/// second lacks, and the other way round: half of the way at first, or they would never meet. From
-/// then on as far as the last step tells to go (Barzilai and Borwein, 1988): compensated returns
-/// need no deskewing, and all of the way is right.
+/// Repeats until the motion found is the motion assumed. If the first scan is deskewed by too much,
+/// the motion found is too small by as much: the first step goes half of the way, or the rounds
+/// would never converge. Later steps have the length that the last one suggests (Barzilai and
+/// Borwein, 1988): compensated returns need no deskewing, and all of the way is right.
 Solution Initializer::refine(Start& start, LocalOdometry& local) {
   double part = tracking::kFirstPart;
   Eigen::Vector3d step_mps = Eigen::Vector3d::Zero(), last_lack_mps = step_mps;
@@ -152,7 +152,7 @@ Solution Initializer::align_second(bool may_be_stationary, LocalOdometry& local)
   return solution;
 }
 
-/// Takes all scans but the newest through a start, as though it had been known.
+/// Takes all scans but the newest again, as though this motion had been known.
 void Initializer::replay(Start start, LocalOdometry& local) {
   Solution solution = refine(start, local);
   for (std::size_t k = 1; k + 1 < count_; ++k) {
@@ -170,18 +170,18 @@ void Initializer::replay(Start start, LocalOdometry& local) {
   }
 }
 
-/// The motion that all scans so far speak for: near the track, once it is clear that there is none
-/// like it elsewhere.
+/// The motion under which all scans so far agree best: near the track, if it is clear that no other
+/// motion fits as well.
 Initializer::Start Initializer::best_start(const Twist& tracked, bool was_lost) {
   if (!is_unambiguous_ || was_lost) return search();
-  // What is elsewhere with all points is, but for chance, with a quarter of them too.
+  // A motion that differs with all points mostly differs with a quarter of them too.
   Twist twist = search_.refine(tracked, Subsample::quarter);
   if (is_elsewhere(twist, tracked)) twist = search_.refine(tracked, Subsample::all);
   return {twist, twist.linear_mps, tracking::kSameVelocity_mps, true};
 }
 
-/// A sensor that was assumed stationary may have crept, where a step of a scan is less than the
-/// scans can tell: a map so begun is smeared by it, and holds the sensor back later.
+/// A sensor that was assumed stationary may have crept, by less in a scan than two scans can tell.
+/// The motion smears a map so begun, and the map holds the sensor back later.
 bool Initializer::recheck_stationary(LocalOdometry& local) {
   if (count_ < tracking::kScansToRecheck) return false;
   const Twist tracked = tracked_twist();
@@ -190,7 +190,7 @@ bool Initializer::recheck_stationary(LocalOdometry& local) {
   return true;
 }
 
-/// Puts the odometry on another start where all scans so far speak for it.
+/// Replays the scans with another motion if all of them agree better under it.
 bool Initializer::recheck_moving(bool was_lost, LocalOdometry& local) {
   const Twist tracked = tracked_twist();
   const Start other = best_start(tracked, was_lost);

@@ -68,15 +68,15 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
   held_.trajectory = scan.solution.trajectory;
   held_.end_ns = scan.timing.end_ns;
   held_.finest_level = scan.finest_level;
-  // While there is little else, a scan late is too late.
+  // A young map cannot wait for the next scan.
   if (keyframes_ < tracking::kYoungMap) insert_held();
   ++keyframes_;
   T_odom_keyframe_ = scan.T_odom_sensor;
   return true;
 }
 
-/// When the sensor has moved; and while the map knows too little. One scan of an open country fills
-/// few cells with enough points; standing still adds them.
+/// When the sensor has moved, and while the map has too few cells with enough points, as after one
+/// scan in open country. A stationary sensor adds points to them.
 bool KeyframeMap::is_due(const AlignedScan& scan) const {
   if (keyframes_ == 0) return true;
   const Solution& solution = scan.solution;

@@ -22,7 +22,7 @@ bool fits_significantly_better(const Solution& a, const Solution& b) {
   return is_significant(a.structure_inliers, b.structure_inliers, search::kPreferSigmas);
 }
 
-/// Of a scan that ended about there; of its motion nothing is known.
+/// The prior of a scan that ended about there, with an unknown motion.
 Prior prior_at(const Pose& T_end, Prior prior) {
   prior.T_begin = moved(T_end, prior.twist, -prior.span_s);
   prior.begin_information = initial_information();
@@ -33,7 +33,7 @@ Prior prior_at(const Pose& T_end, Prior prior) {
   return prior;
 }
 
-/// Of a scan that began where it was predicted to, and ended displaced.
+/// The prior of a scan that began as predicted and ended displaced.
 Prior prior_turned(const Displacement& by, bool may_begin_elsewhere, Prior prior) {
   const Pose T_end = displaced(predicted_end(prior), by);
   prior.T_begin = displaced(prior.T_begin, {by.along_m, by.begin_yaw_rad, by.begin_yaw_rad});
@@ -85,7 +85,7 @@ std::optional<Solution> Relocalizer::find(const Observation& scan, const Prior& 
   return is_found ? std::optional(best) : std::nullopt;
 }
 
-/// From where the scan was predicted to be, and from the likeliest places within reach of it.
+/// Aligns the scan from the predicted place and from the most likely places around it.
 void Relocalizer::attempt_all(const Observation& scan, const Prior& prior,
                               const Solution& at_prediction, const AlignmentHistory& history,
                               LocalOdometry& local) {
@@ -108,7 +108,7 @@ void Relocalizer::attempt_all(const Observation& scan, const Prior& prior,
   }
 }
 
-/// Whether nearly as much fits nowhere else.
+/// Whether significantly less fits at every other place.
 bool Relocalizer::is_unambiguous(const Solution& best) const {
   const Pose back = best.trajectory.end().inverse();
   return std::all_of(attempts_.data(), attempts_.data() + attempt_count_,
@@ -134,8 +134,8 @@ Solution Relocalizer::follow_turn(const Solution& found, const Observation& scan
   return turned.value_or(found);
 }
 
-/// The best alignment from the likeliest turns, where significantly more fits than in `found`. One
-/// that left the place in which it was searched is of another motion, which nothing suggests.
+/// The best alignment from the most likely turns, if significantly more fits than in `found`. One
+/// that left the predicted place is not a turn, and is not taken.
 std::optional<Solution> Relocalizer::better_turned(const Solution& found, const Observation& scan,
                                                    const Prior& prior,
                                                    const AlignmentHistory& history,

@@ -20,11 +20,11 @@ Tracker::Tracker(const OdometryConfig& config)
       motion_check_(selection_.most()) {}
 
 Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, StageHook hook) {
-  // In rooms little of the floor is seen: ceilings hold height and attitude as well. Elsewhere what
-  // is overhead are canopies.
+  // In rooms little of the floor is seen, and ceilings hold height and attitude as well. Elsewhere
+  // flat surfaces overhead are mostly canopies.
   scan_ = observe(scan, selection_.choose(features, scan_.is_room));
-  // Half cells may inform along a direction that is weak with whole ones: they tell the lamps of a
-  // tunnel from its lining.
+  // Half cells may give information along a direction that is weak with whole ones: they tell the
+  // lamps of a tunnel from its lining.
   if (alignment_.weak.count > 0) scan_.finest_level = LocalMaps::kHalf;
   hook(Stage::filter);
   if (session_.is_over) begin_session();
@@ -55,8 +55,8 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
   hook(Stage::update_map);
 }
 
-/// Gives the map up and begins another where the prediction ends: wherever the sensor is now, it is
-/// not where the map knows it, and only a new map ever lets it track again.
+/// Gives the map up and begins another one where the prediction ends. The sensor is not where the
+/// map has it, and only a new map lets it track again.
 void Tracker::begin_session() {
   const std::uint32_t restarts = session_.restarts + 1;
   begin_map();
@@ -71,7 +71,7 @@ void Tracker::begin_map() {
   phase_ = Phase::starting;
 }
 
-/// Finds out what to do about the scan, and predicts its motion.
+/// Sets the phase, and predicts the motion of the scan.
 Prior Tracker::begin_scan(const std::vector<Feature>& features) {
   if (phase_ == Phase::starting) {
     if (initializer_.must_begin_again(scan_.timing, features.size(), local_.state())) begin_map();
@@ -83,7 +83,7 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
   return local_.predict(scan_.timing);
 }
 
-/// None where the map can be of no more use.
+/// None where the session is to end.
 std::optional<Solution> Tracker::solve(const Prior& prior) {
   // A sensor that was just switched on is mostly stationary. After a map was given up, more scans
   // must tell.
@@ -97,10 +97,10 @@ std::optional<Solution> Tracker::solve(const Prior& prior) {
   return relocalizer_.follow_turn(found, scan_, prior, history_, local_);
 }
 
-/// The prediction, if the sensor is not found. None where it went unseen for longer than it can be
-/// searched: the old map must not be asked then, some place in it always looks like the new one.
-/// That the clock was set is no reason: then the sensor is where it was predicted. One that stood
-/// is waited for while scans are missing or poor.
+/// The prediction, if the sensor is not found. None if it was unseen for longer than the search
+/// reaches: the old map always has some place that looks like the new one. Two cases are exempt:
+/// the clock was set, so that the sensor is where it was predicted; and a stationary sensor is
+/// waited for while scans are missing or poor.
 std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const Prior& prior) {
   const auto is_predicted = [&](const Solution& solution) {
     return is_in_place(solution, prior, history_.fit.relative(solution, scan_.structure));
@@ -118,7 +118,7 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
 /// Whether an alignment found too little of the scan in the map.
 bool Tracker::is_lost(const Solution& solution) const {
   const double matched = solution.matched;
-  // Not a part of the features: in a park a fifth of them may match, and the alignment be good.
+  // A number, not a part of the features: in a park a fifth of them may match in a good alignment.
   return matched < static_cast<double>(tracking::kMinFeatures) ||
          solution.inliers < tracking::kMinMeanWeight * matched ||
          history_.fit.relative(solution, scan_.structure) < registration::kChanceFit;
@@ -149,8 +149,8 @@ void Tracker::accept(const Prior& prior) {
     history_.end_ns = scan_.timing.end_ns;
     if (phase_ != Phase::starting) history_.fit.learn(solution, scan_.structure);
   }
-  // A scan whose returns all belong to its end has no middle. One that has not converged is farther
-  // off than its information says, and the noise would grow by its errors.
+  // A scan with compensated returns has no middle. One that has not converged is farther off than
+  // its information says, and the noise would grow by its errors.
   const bool tells_noise = solution.converged && !is_lost && !scan_.timing.motion_compensated;
   if (tells_noise) {
     local_.observe_noise(scan_.timing, solution);
@@ -170,9 +170,9 @@ void Tracker::accept(const Prior& prior) {
   if (!is_lost) local_.observe_stationary();
 }
 
-/// Whether the map led the sensor astray: another motion explains the last scans better.
+/// Whether another motion explains the last scans better, so that the map may be wrong.
 bool Tracker::is_refuted() {
-  // The scans before a gap, or before the clock was set, lie nowhere beside this one.
+  // Scans before a gap, or before the clock was set, cannot be laid over this one.
   if (phase_ != Phase::tracking || alignment_.status == TrackingStatus::lost) {
     motion_check_.clear();
     return false;
@@ -186,7 +186,7 @@ bool Tracker::is_refuted() {
   return motion_check_.is_refuted(by_information.eigenvectors().col(0));
 }
 
-/// Ends the session where the map is of no more use.
+/// Decides whether the session is over.
 void Tracker::watch_session() {
   if (alignment_.is_explained) {
     session_.unexplained_scans = 0;

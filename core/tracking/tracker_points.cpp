@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <span>
 
-/// What the tracker sees, for those who look on.
+/// The points by which the tracker aligned a scan, and those that it mapped.
 namespace lilo::core {
 namespace {
 
-/// Calls `take(index)` for `most` of `size` things, spread evenly over all of them. A step of the
-/// golden ratio never falls into step with the rings, as every k-th in the image's order would.
+/// Calls `take(index)` for `most` of `size` things, spread evenly over all of them. A stride of the
+/// golden ratio never falls into step with the rings, as every k-th in the order of the image
+/// would.
 template <typename Take>
 void take_evenly(std::size_t size, std::size_t most, const Take& take) {
   const std::size_t stride = Selection::golden_stride(size);
