@@ -63,28 +63,29 @@ struct PaperConfig {
 /// The default profile: features of the image plane on a map of Gaussian cells.
 struct DefaultConfig {
   int columns = 1024;             ///< width of the range image; of 64 rings 576 at most
-  int ground_features = 900;      ///< features aligned, about so many
-  int structure_features = 1100;  ///< everything that is not ground
+  int ground_features = 900;      ///< ground features aligned, about so many
+  int structure_features = 1100;  ///< structure features aligned, about so many
   int map_features = 6000;        ///< features a keyframe adds to the map, at most
-  double cell_m = 0.5;            ///< map cell; a distribution spans three of them
+  double cell_m = 0.5;            ///< width of a cell; a distribution spans three of them
   int map_cells = 80000;          ///< fine cells of each kind, which bounds the memory
   double map_radius_m = 100.0;    ///< farther cells are forgotten
   double keyframe_m = 0.3;        ///< the map grows when the sensor has moved so far
   double keyframe_rad = 2.0 * std::numbers::pi / 180.0;  ///< or turned so far
   double noise_m = 0.015;                                ///< 1 sigma of a return across a surface
   double ground_kernel = 1.5;     ///< Cauchy scale in sigmas of the map: ground is rough
-  double structure_kernel = 0.7;  ///< tighter: structure moves, hides and sways
+  double structure_kernel = 0.7;  ///< the same, tighter: structure moves, hides and sways
   double data_weight = 0.1;       ///< neighbouring residuals are not independent: each counts less
-  int segments = 2;               ///< pieces of the motion within one scan, at least
+  int segments = 2;  ///< of the trajectory of one scan, at least; motion::kMaxSegments at most
   int max_iterations = 12;
   /// Process noise: power densities of the acceleration's white noise, how fast the motion may
-  /// change. The least that is assumed; more is estimated on the way (motion/process_noise.hpp).
+  /// change. These are the least; ProcessNoise estimates more from the motion.
   double roll_pitch_density = 0.3;   ///< rad^2/s^3: suspension, rough ground
   double yaw_density = 0.3;          ///< rad^2/s^3
   double translation_density = 3.0;  ///< m^2/s^3
 };
 
-/// Every choice of the odometry. One struct, plain values; see config/*.yaml for the user's view.
+/// Every choice of the odometry that a user may want; constants.hpp has the others. Plain values;
+/// see config/*.yaml for the keys.
 struct OdometryConfig {
   Profile profile = Profile::default_profile;
   double min_range_m = 1.0;    ///< nearer returns are not used

@@ -24,8 +24,8 @@ class PaperOdometry {
   /// scheduling policy of the thread that calls, and fight it for both.
   explicit PaperOdometry(const OdometryConfig& config);
   Estimate process(const Scan& scan, StageHook hook);
-  /// As profile default is called. The method has no features but its own, and its map grows before
-  /// the pose is out.
+  /// The same calls as profile default. The method finds its own features, and its map grows before
+  /// the pose is returned.
   Estimate align(const Scan& scan, const std::vector<Feature>& /*features*/, StageHook hook) {
     return process(scan, hook);
   }
