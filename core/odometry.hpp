@@ -32,8 +32,9 @@ class Odometry {
   Estimate process(const Scan& scan, StageHook hook = {});
 
   /// The same in parts, for those who want the pose early: align() and then update_map(), with the
-  /// features that FeatureExtractor found in the scan. Profile paper does all of it in align().
-  Estimate align(const Scan& scan, const ScanFeatures& features, StageHook hook = {});
+  /// features that FeatureExtractor found in the scan. align() corrects them in place by what it
+  /// has learnt of the sensor's beams. Profile paper does all of it in align().
+  Estimate align(const Scan& scan, ScanFeatures& features, StageHook hook = {});
   /// What the scan just aligned adds to the map. Call it once after each align().
   void update_map(const ScanFeatures& features, StageHook hook = {});
 

@@ -66,7 +66,12 @@ class LocalOdometry {
 
   /// What the scan accepted last adds to the map, of all of its features.
   void grow_map(const Observation& scan, const std::vector<Feature>& features,
-                const Solution& solution, MapUse use);
+                const Solution& solution, MapUse use,
+                const PoseSensitivity& sensitivity = PoseSensitivity::Zero());
+  /// Of the scan just aligned, before it enters the map.
+  BeamEquations beam_equations(const std::vector<Feature>& features, const Trajectory& trajectory) {
+    return solver_.beam_equations(features, map_.cells(), trajectory);
+  }
 
   /// Gives the map up and begins another, at the end of its first scan. Returns where that is
   /// predicted to be.
