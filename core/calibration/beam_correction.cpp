@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "core/calibration/beam_correction.hpp"
 
 namespace lilo::core {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Beams that are not as calibrated: returns of an exact scene, displaced in spherical coordinates.
 #include "core/image/feature_image.hpp"
 #include "core/tracking/tracker.hpp"
