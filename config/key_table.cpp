@@ -126,6 +126,10 @@ std::vector<Key> default_profile_keys() {
             0.1, 45.0, kRestart, "The same for turning."),
       real("odometry.default.noise_m", LILO_MEMBER(odometry.default_profile.noise_m), 0.001, 0.2,
            "m", kRestart, "Range noise of the sensor, 1 sigma."),
+      boolean("odometry.default.calibrate_beams",
+              LILO_MEMBER(odometry.default_profile.calibrate_beams), kRestart,
+              "Estimate, while driving, errors that the sensor's calibration does not know: of the "
+              "rings' elevations against each other, and the eccentricity of the encoder."),
       real("odometry.default.roll_pitch_density",
            LILO_MEMBER(odometry.default_profile.roll_pitch_density), 0.0001, 100.0, "", kRestart,
            "Least process noise of roll and pitch: power density of the angular acceleration "

@@ -43,6 +43,26 @@ inline constexpr int kVoxelPasses = 8;
 
 }  // namespace lilo::core::image
 
+/// Errors of the beams.
+namespace lilo::core::calibration {
+
+/// Radians: 1 sigma of an elevation and of the eccentricity before anything is known.
+inline constexpr double kSigma_rad = 1e-3;
+/// Of so many features one is asked.
+inline constexpr std::size_t kStride = 4;
+/// Information of a residual over what independent ones would have: neighbours share what misleads
+/// them. It includes the stride.
+inline constexpr double kWeight = 0.08;
+/// Observations that are remembered: errors may change with temperature and years.
+inline constexpr double kMemory = 3000.0;
+/// Metres between two observations.
+inline constexpr double kApart_m = 0.3;
+/// Radians. A larger eccentricity is not believed. Where a scene is nothing but round trunks, they
+/// mislead the alignment in one direction, and the estimate grows beyond this.
+inline constexpr double kLargest_rad = 3.0 * kSigma_rad;
+
+}  // namespace lilo::core::calibration
+
 /// Cells of the map.
 namespace lilo::core::map {
 

@@ -57,7 +57,7 @@ Estimate Odometry::process(const Scan& scan, StageHook hook) {
   return estimate;
 }
 
-Estimate Odometry::align(const Scan& scan, const ScanFeatures& features, StageHook hook) {
+Estimate Odometry::align(const Scan& scan, ScanFeatures& features, StageHook hook) {
   return std::visit([&](auto& profile) { return profile.align(scan, features.all, hook); },
                     impl_->profile);
 }

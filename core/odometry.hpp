@@ -32,8 +32,9 @@ class Odometry {
   Estimate process(const Scan& scan, StageHook hook = {});
 
   /// The same in parts, so that the pose comes early: align() and then update_map(), both with the
-  /// features that FeatureExtractor found in the scan. Profile paper does all of it in align().
-  Estimate align(const Scan& scan, const ScanFeatures& features, StageHook hook = {});
+  /// features that FeatureExtractor found in the scan. align() corrects them in place by the
+  /// estimated errors of the sensor's beams. Profile paper does all of it in align().
+  Estimate align(const Scan& scan, ScanFeatures& features, StageHook hook = {});
   /// Adds the scan just aligned to the map. To be called once after each align().
   void update_map(const ScanFeatures& features, StageHook hook = {});
 

@@ -75,6 +75,7 @@ struct DefaultConfig {
   double ground_kernel = 1.5;     ///< Cauchy scale in sigmas of the map: ground is rough
   double structure_kernel = 0.7;  ///< the same, tighter: structure moves, hides and sways
   double data_weight = 0.1;       ///< neighbouring residuals are not independent: each counts less
+  bool calibrate_beams = true;    ///< elevations of the rings and the encoder, while driving
   int segments = 2;  ///< of the trajectory of one scan, at least; motion::kMaxSegments at most
   int max_iterations = 12;
   /// Process noise: power densities of the acceleration's white noise, how fast the motion may

@@ -48,7 +48,7 @@ void Worker::run() {
   while (!counters_.stop.load(std::memory_order_relaxed)) {
     const std::uint64_t maps_asked = counters_.maps_asked.load(std::memory_order_acquire);
     if (maps_asked != counters_.maps_done.load(std::memory_order_relaxed)) copy_map(maps_asked);
-    const ScanSlot* slot = scans_.front();
+    ScanSlot* slot = scans_.front();
     if (slot == nullptr) {
       scan_ready_.wait();
       continue;
@@ -86,7 +86,7 @@ void Worker::skip_to_newest() {
   }
 }
 
-void Worker::align(const ScanSlot& slot) {
+void Worker::align(ScanSlot& slot) {
   timer_.last_ns = monotonic_ns();
   const Estimate estimate = odometry_->align(slot.scan, slot.features, timer_.hook());
   if (estimate.restarts != restarts_) seq_ = 0;

@@ -43,7 +43,7 @@ class Worker {
   void copy_map(std::uint64_t asked);
   void begin_again(std::uint64_t resets);
   void skip_to_newest();
-  void align(const ScanSlot& slot);
+  void align(ScanSlot& slot);
   void report(const ScanSlot& slot, const Estimate& estimate);
   void update_map(const ScanSlot& slot);
   void report_points(const ScanSlot& slot);

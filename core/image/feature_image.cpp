@@ -35,7 +35,7 @@ float FeatureImage::columns_per_rad(int columns) {
   return static_cast<float>(columns) / (2.0F * std::numbers::pi_v<float>);
 }
 
-const std::vector<Feature>& FeatureImage::build(const Scan& scan) {
+std::vector<Feature>& FeatureImage::build(const Scan& scan) {
   begin(scan.beams);
   project(scan.returns);
   return finish(scan);

@@ -44,7 +44,7 @@ class FeatureImage {
   std::vector<Feature>& finish(const Scan& scan);
 
   /// A whole scan at once.
-  const std::vector<Feature>& build(const Scan& scan);
+  std::vector<Feature>& build(const Scan& scan);
 
  private:
   struct Pixel {

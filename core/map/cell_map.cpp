@@ -19,6 +19,7 @@ CellMap::CellMap(const CellMapConfig& config)
   const auto capacity = static_cast<std::size_t>(config.capacity);
   cells_.reserve(capacity);
   sums_.reserve(capacity);
+  if (config.with_sensitivity) sensitivities_.assign(capacity, Sensitivity::Zero());
 }
 
 std::int32_t CellMap::make(const CellKey& key) {
@@ -36,6 +37,7 @@ std::int32_t CellMap::make(const CellKey& key) {
     cells_[static_cast<std::size_t>(at)] = Cell{};
     sums_[static_cast<std::size_t>(at)] = Moments{};
   }
+  if (config_.with_sensitivity) sensitivities_[static_cast<std::size_t>(at)].setZero();
   table_.insert(key.bucket, CellTable::tag_of(key.index), at);
   ++used_;
   cells_[static_cast<std::size_t>(at)].index = key.index;
@@ -101,6 +103,20 @@ Moments CellMap::moments_around(const CellIndex& i) const {
     for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += moved[m];
   }
   return sums;
+}
+
+Sensitivity CellMap::sensitivity_around(std::int32_t at) const {
+  Sensitivity sum = Sensitivity::Zero();
+  if (!config_.with_sensitivity) return sum;
+  Neighbours neighbours;
+  const std::size_t n = neighbours_of(cells_[static_cast<std::size_t>(at)].index, neighbours);
+  float count = 0.0F;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto one = static_cast<std::size_t>(neighbours[k].at);
+    sum += sensitivities_[one];
+    count += count_of(sums_[one]);
+  }
+  return sum / count;
 }
 
 void CellMap::fit(Cell& cell) const {

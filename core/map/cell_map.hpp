@@ -29,6 +29,8 @@ struct CellMapConfig {
   /// ground was seen. The end of a strip, at a wall or at one ring, moves with the sensor and would
   /// hold the sensor in place; the foot of the wall would make it a slope.
   bool level = false;
+  /// Whether the sensitivities of the points are averaged as well.
+  bool with_sensitivity = false;
   /// The most cells. Points that need another one are left out and counted.
   int capacity = DefaultConfig{}.map_cells;
   float memory = map::kMemory;
@@ -100,6 +102,8 @@ class CellMap {
     if (cell.information.isZero(0.0F)) return {};
     return {(point_m - center_of(cell.index)).cast<float>() - cell.mean_m, &cell.information};
   }
+  /// Mean of the points that match() answers with: all those around. Zero without sensitivities.
+  [[nodiscard]] Sensitivity sensitivity_around(std::int32_t at) const;
   /// The cell there, made if missing; kNone where there is no room.
   std::int32_t find_or_insert(const CellKey& key) {
     const std::int32_t at = table_.find(key.bucket, CellTable::tag_of(key.index));
@@ -108,7 +112,7 @@ class CellMap {
     return at;
   }
   void add(std::int32_t at, const CellKey& key, const Eigen::Vector3d& point_m,
-           const SampleGap& gap) {
+           const SampleGap& gap, const Sensitivity& sensitivity = Sensitivity::Zero()) {
     if (at == kNone) return;
     Moments& sums = sums_[static_cast<std::size_t>(at)];
     // A gap longer than the window of three cells fills all of it.
@@ -118,6 +122,9 @@ class CellMap {
     const Eigen::Vector3f p = (point_m - center_of(key.index)).cast<float>();
     const float kept = count_of(sums) >= config_.memory ? kept_ : 1.0F;
     add_to(sums, kept, moments_of(p, spread, gap.outer_m2));
+    if (!config_.with_sensitivity) return;
+    Sensitivity& sum = sensitivities_[static_cast<std::size_t>(at)];
+    sum = kept * sum + sensitivity;
   }
 
   void end_keyframe() { ++keyframe_; }
@@ -194,8 +201,9 @@ class CellMap {
   float kept_;  // part of a full cell's sums that one more point leaves
   CellTable table_;
   std::vector<Cell> cells_;
-  std::vector<Moments> sums_;  // what insert() sums, from the cell's centre
-  std::int32_t free_ = kNone;  // the cell removed last; it names the one before
+  std::vector<Moments> sums_;               // what insert() sums, from the cell's centre
+  std::vector<Sensitivity> sensitivities_;  // sums as well, where they are asked for
+  std::int32_t free_ = kNone;               // the cell removed last; it names the one before
   std::size_t sweep_ = 0;
   std::uint32_t keyframe_ = 1;
   int used_ = 0;

@@ -43,6 +43,7 @@ class LocalMaps {
     Eigen::Vector3d point_m;
     Eigen::Vector3f gap_m;
     FeatureKind kind;
+    Sensitivity sensitivity = Sensitivity::Zero();
   };
   void insert(std::span<const Point> points, std::size_t finest);
 

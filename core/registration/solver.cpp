@@ -71,6 +71,7 @@ void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t 
     for (Correspondence* one : left) {
       one->cell = maps.at(level, one->feature->kind).cell_at(one->key);
       (*one->cached)[level] = one->cell;
+      one->level = level;
     }
     n = 0;
     for (Correspondence* one : left) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/calibration/beam_calibration.hpp"
 #include "core/constants.hpp"
 #include "core/feature.hpp"
 #include "core/map/local_maps.hpp"
@@ -61,6 +62,10 @@ class Solver {
   Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
                  std::size_t finest = LocalMaps::kWhole);
 
+  /// What the residuals of a solution say of the beams. The map is as it was for solve().
+  BeamEquations beam_equations(const std::vector<Feature>& features, LocalMaps& maps,
+                               const Trajectory& trajectory);
+
  private:
   static constexpr std::size_t kAtATime = 32;
   /// A feature under the trajectory, and what it matches.
@@ -71,6 +76,7 @@ class Solver {
     Eigen::Vector3d point_m;                // in the odometry's frame
     CellMap::CellKey key;
     std::int32_t cell = CellMap::kNone;
+    std::size_t level = 0;  // of the cell
     Match match;
   };
   struct Sums {
@@ -85,6 +91,7 @@ class Solver {
                   std::size_t finest, Solution& solution);
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);
   static void match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest);
+  void add_beam_residual(const Correspondence& one, LocalMaps& maps, BeamEquations& sums) const;
   void add_residual(const Correspondence& one, float kernel_scale, float data_weight, Sums& sums);
   Vector6d design_effect(const Unknowns& step, const Prior& prior) const;
   Equations data_equations(const Prior& prior, Matrix6d& data_information) const;

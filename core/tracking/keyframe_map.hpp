@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/calibration/beam_calibration.hpp"
 #include "core/map/local_maps.hpp"
 #include "core/motion/scan_timing.hpp"
 #include "core/motion/trajectory.hpp"
@@ -30,6 +31,7 @@ struct AlignedScan {
   MapUse use = MapUse::keyframe;
   std::size_t finest_level = LocalMaps::kWhole;  ///< as in Observation
   bool with_overhead = true;                     ///< features that are is_overhead() enter too
+  PoseSensitivity sensitivity = PoseSensitivity::Zero();  ///< of its pose
 };
 
 /// The local map and how it grows: by keyframes, which enter it one scan late. A scan sees its own
@@ -63,6 +65,7 @@ class KeyframeMap {
     std::vector<Feature> features;
     Trajectory trajectory;
     std::int64_t end_ns = 0;
+    PoseSensitivity sensitivity = PoseSensitivity::Zero();
     std::size_t finest_level = LocalMaps::kWhole;
     bool is_waiting = false;
   };

@@ -82,9 +82,10 @@ void LocalOdometry::observe_noise(const ScanTiming& scan, const Solution& soluti
 }
 
 void LocalOdometry::grow_map(const Observation& scan, const std::vector<Feature>& features,
-                             const Solution& solution, MapUse use) {
+                             const Solution& solution, MapUse use,
+                             const PoseSensitivity& sensitivity) {
   if (map_.grow({scan.timing, features, solution, state_.T_odom_sensor, use, scan.finest_level,
-                 scan.is_room})) {
+                 scan.is_room, sensitivity})) {
     uncertainty_.add_keyframe(state_, map_.keyframes());
   }
 }

@@ -67,7 +67,12 @@ class LocalOdometry {
 
   /// Adds the scan accepted last to the map, with all of its features.
   void grow_map(const Observation& scan, const std::vector<Feature>& features,
-                const Solution& solution, MapUse use);
+                const Solution& solution, MapUse use,
+                const PoseSensitivity& sensitivity = PoseSensitivity::Zero());
+  /// Of the scan just aligned, before it enters the map.
+  BeamEquations beam_equations(const std::vector<Feature>& features, const Trajectory& trajectory) {
+    return solver_.beam_equations(features, map_.cells(), trajectory);
+  }
 
   /// Gives the map up and begins another one, whose origin is the end of the scan `first`. Returns
   /// the predicted pose of that end in the old map.

@@ -17,9 +17,12 @@ Tracker::Tracker(const OdometryConfig& config)
       initializer_(selection_.most(),
                    static_cast<std::size_t>(config.default_profile.map_features)),
       relocalizer_(selection_.most()),
-      motion_check_(selection_.most()) {}
+      motion_check_(selection_.most()),
+      calibrates_(config.default_profile.calibrate_beams) {}
 
-Estimate Tracker::align(const Scan& scan, const std::vector<Feature>& features, StageHook hook) {
+Estimate Tracker::align(const Scan& scan, std::vector<Feature>& features, StageHook hook) {
+  if (calibrates_) calibration_.correction().apply(features);
+  beams_ = scan.beams;
   // In rooms little of the floor is seen, and ceilings hold height and attitude as well. Elsewhere
   // flat surfaces overhead are mostly canopies.
   scan_ = observe(scan, selection_.choose(features, scan_.is_room));
@@ -51,8 +54,18 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
   const MapUse use = is_lost                   ? MapUse::none
                      : alignment_.is_explained ? MapUse::keyframe
                                                : MapUse::end_only;
-  local_.grow_map(scan_, features, alignment_.solution, use);
+  if (use == MapUse::keyframe) calibrate();
+  local_.grow_map(scan_, features, alignment_.solution, use, calibration_.sensitivity());
   hook(Stage::update_map);
+}
+
+/// In rooms a sensor sees too little of the floor, and of a hand's motion too much.
+void Tracker::calibrate() {
+  const Eigen::Vector3d& place_m = local_.state().T_odom_sensor.translation_m;
+  const bool is_sure = phase_ == Phase::tracking && alignment_.solution.converged && !scan_.is_room;
+  if (!calibrates_ || !is_sure || !calibration_.is_due(place_m)) return;
+  calibration_.observe(local_.beam_equations(*scan_.features, alignment_.solution.trajectory),
+                       beams_, place_m);
 }
 
 /// Gives the map up and begins another one where the prediction ends. The sensor is not where the
@@ -67,6 +80,7 @@ void Tracker::begin_map() {
   session_ = {.T_odom_start = session_.T_odom_start * local_.begin_map(scan_.timing),
               .restarts = session_.restarts};
   initializer_.clear();
+  calibration_.begin_map();
   history_.fit = {};
   phase_ = Phase::starting;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/calibration/beam_calibration.hpp"
 #include "core/estimate.hpp"
 #include "core/image/selection.hpp"
 #include "core/odometry_config.hpp"
@@ -41,7 +42,8 @@ enum class Phase : std::uint8_t { starting, tracking, lost };
 class Tracker {
  public:
   explicit Tracker(const OdometryConfig& config);
-  Estimate align(const Scan& scan, const std::vector<Feature>& features, StageHook hook);
+  /// Corrects the features in place by what is known of the beams.
+  Estimate align(const Scan& scan, std::vector<Feature>& features, StageHook hook);
   /// Once after each align(), with the same features.
   void update_map(const std::vector<Feature>& features, StageHook hook);
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
@@ -49,6 +51,7 @@ class Tracker {
   void aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
   void mapped_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
   [[nodiscard]] Phase phase() const { return phase_; }
+  [[nodiscard]] const BeamCorrection& beam_correction() const { return calibration_.correction(); }
 
  private:
   /// The result of one scan.
@@ -76,6 +79,7 @@ class Tracker {
   void accept(const Prior& prior);
   [[nodiscard]] bool is_refuted();
   void watch_session();
+  void calibrate();
   [[nodiscard]] Estimate estimate(const Scan& scan) const;
 
   Selection selection_;
@@ -83,8 +87,11 @@ class Tracker {
   Initializer initializer_;
   Relocalizer relocalizer_;
   MotionCheck motion_check_;
+  BeamCalibration calibration_;
   Session session_;
   Phase phase_ = Phase::starting;
+  bool calibrates_;
+  BeamTable beams_;      // of the last scan
   Observation scan_;     // the last scan
   Alignment alignment_;  // of it
   AlignmentHistory history_;

@@ -17,7 +17,7 @@ class TrackerPhase : public testing::Test {
   Estimate take(std::uint64_t index, const Pose& T = {}, const test::Scene& scene = test::yard()) {
     const Scan scan = test::scan_of(
         scene, test::even_beams(16, -15.0, 15.0), 900, [&](double) { return T; }, index);
-    const std::vector<Feature>& features = image_.build(scan);
+    std::vector<Feature>& features = image_.build(scan);
     const Estimate estimate = tracker_.align(scan, features, {});
     tracker_.update_map(features, {});
     return estimate;
@@ -31,7 +31,7 @@ class TrackerPhase : public testing::Test {
           return Pose{Eigen::Quaterniond::Identity(), {0.5 * (k + s) - 8.0, 0.0, 0.0}};
         },
         index);
-    const std::vector<Feature>& features = image_.build(scan);
+    std::vector<Feature>& features = image_.build(scan);
     const Estimate estimate = tracker_.align(scan, features, {});
     tracker_.update_map(features, {});
     return estimate;
@@ -116,7 +116,7 @@ TEST_F(TrackerPhase, BeginsAgainInTheSameSessionAfterAFragment) {
   Scan part = test::scan_of(
       test::yard(), test::even_beams(16, -15.0, 15.0), 900, [](double) { return Pose{}; }, 0);
   part.returns.resize(part.returns.size() / 12);
-  const std::vector<Feature> features = image_.build(part);
+  std::vector<Feature> features = image_.build(part);
   tracker_.align(part, features, {});
   tracker_.update_map(features, {});
   const Estimate e = take(1);

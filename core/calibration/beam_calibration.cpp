@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/calibration/beam_calibration.hpp"
+
+#include "core/constants.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace lilo::core {
+namespace {
+
+constexpr double kPrior = 1.0 / (calibration::kSigma_rad * calibration::kSigma_rad);
+
+}  // namespace
+
+bool BeamCalibration::is_due(const Eigen::Vector3d& place_m) const {
+  return !last_place_m_ || (place_m - *last_place_m_).norm() > calibration::kApart_m;
+}
+
+void BeamCalibration::observe(const BeamEquations& scan, const BeamTable& beams,
+                              const Eigen::Vector3d& place_m) {
+  last_place_m_ = place_m;
+  observe_elevations(scan, beams);
+  keep_nominal_mean(beams);
+  observe_eccentricity(scan);
+  for (std::size_t ring = 0; ring < correction_.elevation_rad.size(); ++ring) {
+    correction_.elevation_rad[ring] = static_cast<float>(elevation_rad_[ring]);
+  }
+  correction_.eccentricity_rad = eccentricity_rad_.cast<float>();
+}
+
+void BeamCalibration::begin_map() {
+  sensitivity_.setZero();
+  last_place_m_.reset();
+}
+
+void BeamCalibration::observe_elevations(const BeamEquations& scan, const BeamTable& beams) {
+  for (std::size_t ring = 0; ring < static_cast<std::size_t>(beams.ring_count); ++ring) {
+    information_[ring] *= 1.0 - 1.0 / calibration::kMemory;
+    information_[ring] += calibration::kWeight * scan.elevation_information[ring];
+    elevation_rad_[ring] +=
+        calibration::kWeight * scan.elevation_gradient[ring] / (information_[ring] + kPrior);
+  }
+}
+
+/// Takes out what the rings have in common, a constant and a slope over the elevation. Rings of
+/// which nothing is known neither tell it nor follow it.
+void BeamCalibration::keep_nominal_mean(const BeamTable& beams) {
+  const auto rings = static_cast<std::size_t>(beams.ring_count);
+  Eigen::Matrix2d H = Eigen::Matrix2d::Identity();  // no ring may be known at all
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  const auto row = [&](std::size_t ring) {
+    return Eigen::Vector2d(1.0, static_cast<double>(beams.elevation_rad[ring]));
+  };
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    H += information_[ring] * row(ring) * row(ring).transpose();
+    b += information_[ring] * elevation_rad_[ring] * row(ring);
+  }
+  const Eigen::Vector2d common = H.ldlt().solve(b);
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    const double known = information_[ring] / (information_[ring] + kPrior);
+    elevation_rad_[ring] -= known * row(ring).dot(common);
+  }
+}
+
+/// The pose is eliminated by the Schur complement.
+void BeamCalibration::observe_eccentricity(const BeamEquations& scan) {
+  const Eigen::LDLT<Matrix6d> of_pose(scan.pose_information);
+  const PoseSensitivity followed = of_pose.solve(scan.cross_information);
+  if (of_pose.info() != Eigen::Success || !followed.allFinite()) return;
+  sensitivity_ = -followed;
+  const Eigen::Matrix2d H =
+      scan.eccentricity_information - scan.cross_information.transpose() * followed;
+  const Eigen::Vector2d b = scan.eccentricity_gradient - followed.transpose() * scan.pose_gradient;
+  const double kept = 1.0 - 1.0 / calibration::kMemory;
+  eccentricity_information_ = kept * eccentricity_information_ + calibration::kWeight * H;
+  eccentricity_sum_ = kept * eccentricity_sum_ + calibration::kWeight * (b + H * eccentricity_rad_);
+  const Eigen::Matrix2d all = eccentricity_information_ + kPrior * Eigen::Matrix2d::Identity();
+  eccentricity_rad_ = all.ldlt().solve(eccentricity_sum_);
+  if (!(eccentricity_rad_.norm() < calibration::kLargest_rad)) eccentricity_rad_.setZero();
+}
+
+}  // namespace lilo::core

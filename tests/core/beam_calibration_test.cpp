@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Beams that are not as calibrated: returns of an exact scene, displaced in spherical coordinates.
+#include "core/image/feature_image.hpp"
+#include "core/tracking/tracker.hpp"
+#include "tests/core/analytic_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace lilo::core {
+namespace {
+
+constexpr double kMrad = 1e-3;
+constexpr double kCosine_rad = -1.0 * kMrad, kSine_rad = 0.8 * kMrad;
+
+/// What the beams of a ring point above their nominal elevation.
+double elevation_error_rad(int ring) { return (ring % 2 == 0 ? 0.8 : -0.8) * kMrad; }
+
+double azimuth_error_rad(double azimuth_rad) {
+  return kCosine_rad * std::cos(azimuth_rad) + kSine_rad * std::sin(azimuth_rad);
+}
+
+template <typename Point>
+void point_at(double range_m, double elevation_rad, double azimuth_rad, Point& p) {
+  p.x_m = static_cast<float>(range_m * std::cos(elevation_rad) * std::cos(azimuth_rad));
+  p.y_m = static_cast<float>(range_m * std::cos(elevation_rad) * std::sin(azimuth_rad));
+  p.z_m = static_cast<float>(range_m * std::sin(elevation_rad));
+}
+
+/// The return as the sensor reports it, whose beam points a little elsewhere than it believes.
+void report_wrongly(Return& r) {
+  const Eigen::Vector3d p(r.x_m, r.y_m, r.z_m);
+  const double azimuth_rad = std::atan2(p.y(), p.x());
+  const double elevation_rad = std::atan2(p.z(), p.head<2>().norm());
+  point_at(p.norm(), elevation_rad - elevation_error_rad(r.ring),
+           azimuth_rad - azimuth_error_rad(azimuth_rad), r);
+  r.azimuth_rad = std::atan2(r.y_m, r.x_m);
+}
+
+TEST(BeamCorrection, TurnsABeamUpAndAround) {
+  BeamCorrection correction;
+  correction.elevation_rad[3] = 2e-3F;
+  correction.eccentricity_rad = {1e-3F, -0.5e-3F};
+  Feature expected{}, found{};
+  found.ring = 3;
+  const double elevation_rad = -0.2, azimuth_rad = 2.1;
+  point_at(30.0, elevation_rad, azimuth_rad, found);
+  const double around_rad = 1e-3 * std::cos(azimuth_rad) - 0.5e-3 * std::sin(azimuth_rad);
+  point_at(30.0, elevation_rad + 2e-3, azimuth_rad + around_rad, expected);
+  std::vector<Feature> features{found};
+  correction.apply(features);
+  // The second order of 2 mrad over 30 m.
+  EXPECT_NEAR(features[0].x_m, expected.x_m, 1e-4);
+  EXPECT_NEAR(features[0].y_m, expected.y_m, 1e-4);
+  EXPECT_NEAR(features[0].z_m, expected.z_m, 1e-4);
+}
+
+TEST(BeamCorrection, LeavesWhatLiesOnTheAxis) {
+  BeamCorrection correction;
+  correction.eccentricity_rad = {1e-3F, 1e-3F};
+  std::vector<Feature> features{Feature{.x_m = 0.0F, .y_m = 0.0F, .z_m = 2.0F}};
+  correction.apply(features);
+  EXPECT_EQ(features[0].x_m, 0.0F);
+  EXPECT_EQ(features[0].z_m, 2.0F);
+}
+
+/// Rounds in a yard, at 5 m/s.
+class BeamCalibrationInAYard : public testing::Test {
+ protected:
+  static Pose on_the_round(double time_s) {
+    constexpr double kRadius_m = 6.0, kSpeed_mps = 5.0;
+    const double yaw_rad = kSpeed_mps / kRadius_m * time_s;
+    return {so3_exp({0.0, 0.0, yaw_rad}),
+            {kRadius_m * std::sin(yaw_rad), -kRadius_m * std::cos(yaw_rad), 0.0}};
+  }
+  void drive(int scans, bool wrongly) {
+    for (int k = 0; k < scans; ++k) {
+      Scan scan = test::scan_of(
+          test::yard(), test::even_beams(16, -15.0, 15.0), 900,
+          [&](double s) { return on_the_round(0.1 * (k + s)); }, static_cast<std::uint64_t>(k));
+      if (wrongly) {
+        for (Return& r : scan.returns) report_wrongly(r);
+      }
+      std::vector<Feature>& features = image_.build(scan);
+      last_ = tracker_.align(scan, features, {});
+      tracker_.update_map(features, {});
+    }
+  }
+
+  Tracker tracker_{OdometryConfig{}};
+  FeatureImage image_{1024, {}};
+  Estimate last_;
+};
+
+TEST_F(BeamCalibrationInAYard, FindsEccentricityAndRings) {
+  drive(400, true);
+  ASSERT_EQ(last_.status, TrackingStatus::tracking);
+  const BeamCorrection& found = tracker_.beam_correction();
+  EXPECT_NEAR(found.eccentricity_rad[0], kCosine_rad, 0.3 * kMrad);
+  EXPECT_NEAR(found.eccentricity_rad[1], kSine_rad, 0.3 * kMrad);
+  for (const int ring : {1, 2, 3, 4}) {  // which see the ground
+    const float error_rad = found.elevation_rad[static_cast<std::size_t>(ring)];
+    EXPECT_NEAR(error_rad, elevation_error_rad(ring), 0.4 * kMrad) << "ring " << ring;
+  }
+}
+
+TEST_F(BeamCalibrationInAYard, FindsNothingWhereBeamsAreExact) {
+  drive(400, false);
+  ASSERT_EQ(last_.status, TrackingStatus::tracking);
+  const BeamCorrection& found = tracker_.beam_correction();
+  EXPECT_LT(found.eccentricity_rad.norm(), 0.15F * static_cast<float>(kMrad));
+  for (const float error_rad : found.elevation_rad) EXPECT_NEAR(error_rad, 0.0, 0.15 * kMrad);
+}
+
+}  // namespace
+}  // namespace lilo::core
