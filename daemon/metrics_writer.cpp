@@ -17,10 +17,10 @@ MetricsWriter::~MetricsWriter() {
 std::error_code MetricsWriter::write(const std::string& path, std::string_view text) {
   if (path.empty()) return {};
   if (writing_.load(std::memory_order_acquire)) {
-    const bool stalled = ++left_out_ > kMostLeftOut;
+    const bool stalled = std::chrono::steady_clock::now() - given_at_ >= longest_write_;
     return stalled ? std::make_error_code(std::errc::device_or_resource_busy) : std::error_code();
   }
-  left_out_ = 0;
+  given_at_ = std::chrono::steady_clock::now();
   const std::error_code error = error_;
   if (!thread_.joinable()) text_.reserve(2 * text.size());  // its numbers grow longer
   path_ = path;

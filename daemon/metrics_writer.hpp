@@ -5,6 +5,7 @@
 #include "daemon/wakeup.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -18,21 +19,22 @@ class MetricsWriter {
  public:
   using Replace = std::error_code (*)(const std::string& path, std::string_view text);
 
-  static constexpr int kMostLeftOut = 4;  ///< the publisher gives one text a second
-
   /// Throws std::system_error when the system has no file descriptor left. `replace`: for tests,
-  /// what writes a file.
-  explicit MetricsWriter(Replace replace = replace_file) : replace_(replace) {}
+  /// what writes a file. `longest_write`: a disk that takes longer has stalled.
+  explicit MetricsWriter(
+      Replace replace = replace_file,
+      std::chrono::steady_clock::duration longest_write = std::chrono::seconds(5))
+      : replace_(replace), longest_write_(longest_write) {}
   /// Waits until what it was given is written.
   ~MetricsWriter();
   MetricsWriter(const MetricsWriter&) = delete;
   MetricsWriter& operator=(const MetricsWriter&) = delete;
 
   /// An empty path: there is no file. While the text before is still being written, this one is
-  /// left out, and more than kMostLeftOut in a row are an error (device_or_resource_busy). Why the
-  /// last one could not be written, or nothing. The first call with a file starts
-  /// the thread, so that it comes after the process has its memory locked and its stacks limited,
-  /// and throws std::system_error when there is none.
+  /// left out, and it is an error (device_or_resource_busy) when that takes too long. Returns why
+  /// the last text could not be written, or nothing. The first call with a file starts the thread,
+  /// so that it comes after the process has its memory locked and its stacks limited, and throws
+  /// std::system_error when there is none.
   std::error_code write(const std::string& path, std::string_view text);
 
  private:
@@ -40,12 +42,13 @@ class MetricsWriter {
 
   Wakeup given_{Wakeup::Mode::blocking};
   std::atomic<bool> stop_{false};
-  int left_out_ = 0;  // in a row; the caller's
+  std::chrono::steady_clock::time_point given_at_;  // the caller's
   /// Whose the three below are: the thread's while it is set, else the caller's.
   std::atomic<bool> writing_{false};
   std::string path_, text_;
   std::error_code error_;
   Replace replace_;
+  std::chrono::steady_clock::duration longest_write_;
   std::thread thread_;
 };
 
