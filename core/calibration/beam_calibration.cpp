@@ -64,7 +64,8 @@ void BeamCalibration::keep_nominal_mean(const BeamTable& beams) {
 
 /// The pose is eliminated by the Schur complement.
 void BeamCalibration::observe_eccentricity(const BeamEquations& scan) {
-  const Eigen::LDLT<Matrix6d> of_pose(scan.pose_information);
+  // In a corridor a direction may have no information: 1 sigma of 1 m and 1 rad.
+  const Eigen::LDLT<Matrix6d> of_pose(scan.pose_information + Matrix6d::Identity());
   const PoseSensitivity followed = of_pose.solve(scan.cross_information);
   if (of_pose.info() != Eigen::Success || !followed.allFinite()) return;
   sensitivity_ = -followed;
