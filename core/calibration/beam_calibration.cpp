@@ -22,10 +22,6 @@ void BeamCalibration::observe(const BeamEquations& scan, const BeamTable& beams,
   observe_elevations(scan, beams);
   keep_nominal_mean(beams);
   observe_eccentricity(scan);
-  for (std::size_t ring = 0; ring < correction_.elevation_rad.size(); ++ring) {
-    correction_.elevation_rad[ring] = static_cast<float>(elevation_rad_[ring]);
-  }
-  correction_.eccentricity_rad = eccentricity_rad_.cast<float>();
 }
 
 void BeamCalibration::begin_map() {
@@ -35,30 +31,30 @@ void BeamCalibration::begin_map() {
 
 void BeamCalibration::observe_elevations(const BeamEquations& scan, const BeamTable& beams) {
   for (std::size_t ring = 0; ring < static_cast<std::size_t>(beams.ring_count); ++ring) {
-    information_[ring] *= 1.0 - 1.0 / calibration::kMemory;
-    information_[ring] += calibration::kWeight * scan.elevation_information[ring];
-    elevation_rad_[ring] +=
-        calibration::kWeight * scan.elevation_gradient[ring] / (information_[ring] + kPrior);
+    elevation_information_[ring] *= 1.0 - 1.0 / calibration::kMemory;
+    elevation_information_[ring] += calibration::kWeight * scan.elevation_information[ring];
+    correction_.elevation_rad[ring] += calibration::kWeight * scan.elevation_gradient[ring] /
+                                       (elevation_information_[ring] + kPrior);
   }
 }
 
-/// Takes out what the rings have in common, a constant and a slope over the elevation. Rings of
-/// which nothing is known neither tell it nor follow it.
+/// Subtracts a line fitted over the elevations, weighted by information. A ring without information
+/// has no part in the fit and keeps its zero.
 void BeamCalibration::keep_nominal_mean(const BeamTable& beams) {
   const auto rings = static_cast<std::size_t>(beams.ring_count);
-  Eigen::Matrix2d H = Eigen::Matrix2d::Identity();  // no ring may be known at all
+  Eigen::Matrix2d H = Eigen::Matrix2d::Identity();  // invertible without any information
   Eigen::Vector2d b = Eigen::Vector2d::Zero();
   const auto row = [&](std::size_t ring) {
     return Eigen::Vector2d(1.0, static_cast<double>(beams.elevation_rad[ring]));
   };
   for (std::size_t ring = 0; ring < rings; ++ring) {
-    H += information_[ring] * row(ring) * row(ring).transpose();
-    b += information_[ring] * elevation_rad_[ring] * row(ring);
+    H += elevation_information_[ring] * row(ring) * row(ring).transpose();
+    b += elevation_information_[ring] * correction_.elevation_rad[ring] * row(ring);
   }
   const Eigen::Vector2d common = H.ldlt().solve(b);
   for (std::size_t ring = 0; ring < rings; ++ring) {
-    const double known = information_[ring] / (information_[ring] + kPrior);
-    elevation_rad_[ring] -= known * row(ring).dot(common);
+    const double known = elevation_information_[ring] / (elevation_information_[ring] + kPrior);
+    correction_.elevation_rad[ring] -= known * row(ring).dot(common);
   }
 }
 
@@ -74,10 +70,12 @@ void BeamCalibration::observe_eccentricity(const BeamEquations& scan) {
   const Eigen::Vector2d b = scan.eccentricity_gradient - followed.transpose() * scan.pose_gradient;
   const double kept = 1.0 - 1.0 / calibration::kMemory;
   eccentricity_information_ = kept * eccentricity_information_ + calibration::kWeight * H;
-  eccentricity_sum_ = kept * eccentricity_sum_ + calibration::kWeight * (b + H * eccentricity_rad_);
+  eccentricity_sum_ =
+      kept * eccentricity_sum_ + calibration::kWeight * (b + H * correction_.eccentricity_rad);
   const Eigen::Matrix2d all = eccentricity_information_ + kPrior * Eigen::Matrix2d::Identity();
-  eccentricity_rad_ = all.ldlt().solve(eccentricity_sum_);
-  if (!(eccentricity_rad_.norm() < calibration::kLargest_rad)) eccentricity_rad_.setZero();
+  const Eigen::Vector2d found_rad = all.ldlt().solve(eccentricity_sum_);
+  const bool is_plausible = found_rad.norm() < calibration::kLargest_rad;
+  correction_.eccentricity_rad = is_plausible ? found_rad : Eigen::Vector2d::Zero();
 }
 
 }  // namespace lilo::core

@@ -16,13 +16,12 @@ namespace lilo::core {
 /// radian of its cosine and sine.
 using PoseSensitivity = Eigen::Matrix<double, 6, 2>;
 
-/// What one scan, aligned with the map, says of its beams. Residuals are weighted as in the
-/// alignment.
+/// Normal equations of the beams' errors, from one scan that was aligned with the map. Residuals
+/// are weighted as in the alignment.
 struct BeamEquations {
-  /// Of each ring's elevation, from ground alone, with the pose as it was found.
+  /// Of the elevation of each ring, from ground alone, at the pose of the alignment.
   std::array<double, kMaxRings> elevation_gradient{}, elevation_information{};
-  /// Of pose and eccentricity together: H and b of H x = b, of the pose, of both, and of the
-  /// eccentricity.
+  /// Of pose and eccentricity together: the blocks of H and b of H x = b.
   Matrix6d pose_information = Matrix6d::Zero();
   PoseSensitivity cross_information = PoseSensitivity::Zero();
   Eigen::Matrix2d eccentricity_information = Eigen::Matrix2d::Zero();
@@ -33,15 +32,15 @@ struct BeamEquations {
 /// Estimates the differences between the elevations of the rings, and the eccentricity of the
 /// encoder.
 ///
-/// Rings: the elevation of each follows the mean residual of its ground returns, to which the other
-/// rings gave the map. What all rings have in common is not seen in this way: an error of all
-/// elevations makes a cone of level ground, and one that grows with the elevation lowers the
-/// ground. So the fit of both is taken out, and the sensor keeps its nominal mean.
+/// Rings: the elevation of a ring follows the mean residual of its ground returns against the map,
+/// which holds the returns of all rings. These residuals do not show an error that all rings share:
+/// the same error of all elevations turns level ground into a cone, and an error that grows with
+/// the elevation lowers the ground. So a line fitted over the elevations is subtracted.
 ///
-/// Eccentricity: the map was laid by the same encoder, and its error bends the path. So the
-/// derivative by the eccentricity is carried along: each point that enters the map brings its own,
-/// with that of its pose, and a residual's derivative is its point's less its cell's. (This is
-/// Gauss-Newton over all scans, in which each pose is a function of the eccentricity.)
+/// Eccentricity: the points of the map were measured with the same encoder, and its error bends the
+/// path. So every point that enters the map brings its derivative by the eccentricity, with that of
+/// its pose. The derivative of a residual is that of its point minus that of its cell. This is
+/// Gauss-Newton over all scans, in which each pose is a function of the eccentricity.
 ///
 /// Not thread-safe; no allocation.
 class BeamCalibration {
@@ -49,12 +48,12 @@ class BeamCalibration {
   [[nodiscard]] const BeamCorrection& correction() const { return correction_; }
   /// Of the last scan that was observed.
   [[nodiscard]] const PoseSensitivity& sensitivity() const { return sensitivity_; }
-  /// Whether the sensor has moved enough since the last observation: from the same place the same
-  /// residuals come again.
+  /// Whether the sensor has moved far enough since the last observation. At the same place the
+  /// residuals are the same, and would count again.
   [[nodiscard]] bool is_due(const Eigen::Vector3d& place_m) const;
   /// The scan ended at `place_m` (odometry frame).
   void observe(const BeamEquations& scan, const BeamTable& beams, const Eigen::Vector3d& place_m);
-  /// A new map knows nothing of the eccentricity; the correction stays.
+  /// Poses on a new map do not depend on the eccentricity yet. The correction stays.
   void begin_map();
 
  private:
@@ -63,10 +62,10 @@ class BeamCalibration {
   void observe_eccentricity(const BeamEquations& scan);
 
   BeamCorrection correction_;
-  std::array<double, kMaxRings> elevation_rad_{}, information_{};
+  std::array<double, kMaxRings> elevation_information_{};
+  /// H and b of H x = b over all observations, x the whole eccentricity.
   Eigen::Matrix2d eccentricity_information_ = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d eccentricity_rad_ = Eigen::Vector2d::Zero(),
-                  eccentricity_sum_ = eccentricity_rad_;
+  Eigen::Vector2d eccentricity_sum_ = Eigen::Vector2d::Zero();
   PoseSensitivity sensitivity_ = PoseSensitivity::Zero();
   std::optional<Eigen::Vector3d> last_place_m_;
 };

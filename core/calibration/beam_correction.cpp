@@ -4,12 +4,13 @@
 namespace lilo::core {
 
 void BeamCorrection::apply(std::vector<Feature>& features) const {
+  const Eigen::Vector2f eccentricity = eccentricity_rad.cast<float>();
   for (Feature& f : features) {
     const float horizontal_m = std::sqrt(f.x_m * f.x_m + f.y_m * f.y_m);
     if (!(horizontal_m > 0.0F)) continue;
     const float cosine = f.x_m / horizontal_m, sine = f.y_m / horizontal_m;
-    const float up_rad = elevation_rad[f.ring];
-    const float around_rad = eccentricity_rad[0] * cosine + eccentricity_rad[1] * sine;
+    const auto up_rad = static_cast<float>(elevation_rad[f.ring]);
+    const float around_rad = eccentricity[0] * cosine + eccentricity[1] * sine;
     const float x_m = f.x_m, y_m = f.y_m;
     f.x_m -= around_rad * y_m + up_rad * f.z_m * cosine;
     f.y_m += around_rad * x_m - up_rad * f.z_m * sine;

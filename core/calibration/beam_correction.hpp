@@ -10,15 +10,15 @@
 #include <cmath>
 #include <vector>
 
-/// What a sensor's calibration does not know of its beams.
+/// Errors of a sensor's beams that its calibration does not have.
 namespace lilo::core {
 
-/// Errors to be taken back. An encoder whose disc sits off the axis says an azimuth that is wrong
-/// by one sine over the revolution: cosine * cos(azimuth) + sine * sin(azimuth), azimuths
-/// counter-clockwise from +x.
+/// Corrections to be added to elevations and azimuths. An encoder whose disc is mounted off the
+/// axis reports azimuths with an error of one period a revolution. Its correction is cosine *
+/// cos(azimuth) + sine * sin(azimuth), with azimuths counter-clockwise from +x.
 struct BeamCorrection {
-  std::array<float, kMaxRings> elevation_rad{};                ///< to be added, by ring
-  Eigen::Vector2f eccentricity_rad = Eigen::Vector2f::Zero();  ///< cosine and sine, to be added
+  std::array<double, kMaxRings> elevation_rad{};               ///< by ring
+  Eigen::Vector2d eccentricity_rad = Eigen::Vector2d::Zero();  ///< cosine and sine
 
   void apply(std::vector<Feature>& features) const;
 };

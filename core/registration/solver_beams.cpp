@@ -6,7 +6,7 @@
 namespace lilo::core {
 namespace {
 
-/// Of a point (rotation, translation; odometry axes) that lies there from the sensor.
+/// How a point `p` from the sensor moves by rotation and translation (odometry axes).
 Eigen::Matrix<float, 3, 6> moved_by_pose(const Eigen::Vector3f& p) {
   Eigen::Matrix<float, 3, 6> J;
   J << 0.0F, p.z(), -p.y(), 1.0F, 0.0F, 0.0F,  //
@@ -48,12 +48,12 @@ void Solver::add_beam_residual(const Correspondence& one, LocalMaps& maps,
     sums.elevation_gradient[f.ring] -= static_cast<double>(up.dot(wOr));
     sums.elevation_information[f.ring] += static_cast<double>(up.dot(wO * up));
   }
-  // Only cells of the usual size know how they depend on the eccentricity.
+  // Only whole cells have sensitivities.
   if (one.level != LocalMaps::kWhole) return;
   const Eigen::Matrix<float, 3, 6> J = moved_by_pose(one.turned_m);
   sums.pose_information += (J.transpose() * wO * J).cast<double>();
   sums.pose_gradient -= (J.transpose() * wOr).cast<double>();
-  if (ground) return;  // level: what turns it about the vertical is not seen
+  if (ground) return;  // as in make_cells(): it does not show the eccentricity
   const Sensitivity by_cell = maps.at(LocalMaps::kWhole, f.kind).sensitivity_around(one.cell);
   const Sensitivity D = sampled_.turn_both(f.s, moved_by_eccentricity(f)) - by_cell;
   sums.cross_information += (J.transpose() * wO * D).cast<double>();

@@ -11,7 +11,7 @@ namespace {
 
 LocalMaps make_cells(const DefaultConfig& c) {
   const auto map = [&](FeatureKind kind, double cell_m, int capacity) {
-    // Level ground tells nothing of what turns the points about the vertical.
+    // An eccentricity moves points about the vertical, which level ground does not show.
     return CellMapConfig{.cell_m = static_cast<float>(cell_m),
                          .noise_m = static_cast<float>(c.noise_m),
                          .level = kind == FeatureKind::ground,

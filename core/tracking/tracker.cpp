@@ -59,7 +59,7 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
   hook(Stage::update_map);
 }
 
-/// In rooms a sensor sees too little of the floor, and of a hand's motion too much.
+/// Not in rooms: little of the floor is seen there.
 void Tracker::calibrate() {
   const Eigen::Vector3d& place_m = local_.state().T_odom_sensor.translation_m;
   const bool is_sure = phase_ == Phase::tracking && alignment_.solution.converged && !scan_.is_room;

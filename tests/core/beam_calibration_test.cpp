@@ -16,7 +16,7 @@ namespace {
 constexpr double kMrad = 1e-3;
 constexpr double kCosine_rad = -1.0 * kMrad, kSine_rad = 0.8 * kMrad;
 
-/// What the beams of a ring point above their nominal elevation.
+/// By how much a ring points above its nominal elevation.
 double elevation_error_rad(int ring) { return (ring % 2 == 0 ? 0.8 : -0.8) * kMrad; }
 
 double azimuth_error_rad(double azimuth_rad) {
@@ -42,8 +42,8 @@ void report_wrongly(Return& r) {
 
 TEST(BeamCorrection, TurnsABeamUpAndAround) {
   BeamCorrection correction;
-  correction.elevation_rad[3] = 2e-3F;
-  correction.eccentricity_rad = {1e-3F, -0.5e-3F};
+  correction.elevation_rad[3] = 2e-3;
+  correction.eccentricity_rad = {1e-3, -0.5e-3};
   Feature expected{}, found{};
   found.ring = 3;
   const double elevation_rad = -0.2, azimuth_rad = 2.1;
@@ -60,7 +60,7 @@ TEST(BeamCorrection, TurnsABeamUpAndAround) {
 
 TEST(BeamCorrection, LeavesWhatLiesOnTheAxis) {
   BeamCorrection correction;
-  correction.eccentricity_rad = {1e-3F, 1e-3F};
+  correction.eccentricity_rad = {1e-3, 1e-3};
   std::vector<Feature> features{Feature{.x_m = 0.0F, .y_m = 0.0F, .z_m = 2.0F}};
   correction.apply(features);
   EXPECT_EQ(features[0].x_m, 0.0F);
@@ -102,7 +102,7 @@ TEST_F(BeamCalibrationInAYard, FindsEccentricityAndRings) {
   EXPECT_NEAR(found.eccentricity_rad[0], kCosine_rad, 0.3 * kMrad);
   EXPECT_NEAR(found.eccentricity_rad[1], kSine_rad, 0.3 * kMrad);
   for (const int ring : {1, 2, 3, 4}) {  // which see the ground
-    const float error_rad = found.elevation_rad[static_cast<std::size_t>(ring)];
+    const double error_rad = found.elevation_rad[static_cast<std::size_t>(ring)];
     EXPECT_NEAR(error_rad, elevation_error_rad(ring), 0.4 * kMrad) << "ring " << ring;
   }
 }
@@ -111,8 +111,8 @@ TEST_F(BeamCalibrationInAYard, FindsNothingWhereBeamsAreExact) {
   drive(400, false);
   ASSERT_EQ(last_.status, TrackingStatus::tracking);
   const BeamCorrection& found = tracker_.beam_correction();
-  EXPECT_LT(found.eccentricity_rad.norm(), 0.15F * static_cast<float>(kMrad));
-  for (const float error_rad : found.elevation_rad) EXPECT_NEAR(error_rad, 0.0, 0.15 * kMrad);
+  EXPECT_LT(found.eccentricity_rad.norm(), 0.15 * kMrad);
+  for (const double error_rad : found.elevation_rad) EXPECT_NEAR(error_rad, 0.0, 0.15 * kMrad);
 }
 
 }  // namespace
