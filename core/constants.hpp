@@ -46,19 +46,20 @@ inline constexpr int kVoxelPasses = 8;
 /// Errors of the beams.
 namespace lilo::core::calibration {
 
-/// Radians: 1 sigma of an elevation and of the eccentricity before anything is known.
+/// Radians: 1 sigma of an elevation and of the eccentricity before the first observation.
 inline constexpr double kSigma_rad = 1e-3;
-/// Of so many features one is asked.
+inline constexpr double kPriorInformation = 1.0 / (kSigma_rad * kSigma_rad);
+/// One of so many features is used.
 inline constexpr std::size_t kStride = 4;
-/// Information of a residual over what independent ones would have: neighbours share what misleads
-/// them. It includes the stride.
+/// Weight of the residuals: those of neighbours have errors in common. That only one of kStride is
+/// used is counted in.
 inline constexpr double kWeight = 0.08;
-/// Observations that are remembered: errors may change with temperature and years.
+/// Observations that an estimate remembers: errors may change with temperature and years.
 inline constexpr double kMemory = 3000.0;
 /// Metres between two observations.
 inline constexpr double kApart_m = 0.3;
-/// Radians. A larger eccentricity is not believed. Where a scene is nothing but round trunks, they
-/// mislead the alignment in one direction, and the estimate grows beyond this.
+/// Radians: a larger eccentricity is not applied. In a scene of nothing but round trunks the
+/// alignment has an error in one direction, and the estimate grows beyond this.
 inline constexpr double kLargest_rad = 3.0 * kSigma_rad;
 
 }  // namespace lilo::core::calibration

@@ -6,11 +6,6 @@
 #include <Eigen/Cholesky>
 
 namespace lilo::core {
-namespace {
-
-constexpr double kPrior = 1.0 / (calibration::kSigma_rad * calibration::kSigma_rad);
-
-}  // namespace
 
 bool BeamCalibration::is_due(const Eigen::Vector3d& place_m) const {
   return !last_place_m_ || (place_m - *last_place_m_).norm() > calibration::kApart_m;
@@ -20,7 +15,7 @@ void BeamCalibration::observe(const BeamEquations& scan, const BeamTable& beams,
                               const Eigen::Vector3d& place_m) {
   last_place_m_ = place_m;
   observe_elevations(scan, beams);
-  keep_nominal_mean(beams);
+  subtract_common_line(beams);
   observe_eccentricity(scan);
 }
 
@@ -33,14 +28,15 @@ void BeamCalibration::observe_elevations(const BeamEquations& scan, const BeamTa
   for (std::size_t ring = 0; ring < static_cast<std::size_t>(beams.ring_count); ++ring) {
     elevation_information_[ring] *= 1.0 - 1.0 / calibration::kMemory;
     elevation_information_[ring] += calibration::kWeight * scan.elevation_information[ring];
-    correction_.elevation_rad[ring] += calibration::kWeight * scan.elevation_gradient[ring] /
-                                       (elevation_information_[ring] + kPrior);
+    correction_.elevation_rad[ring] +=
+        calibration::kWeight * scan.elevation_gradient[ring] /
+        (elevation_information_[ring] + calibration::kPriorInformation);
   }
 }
 
 /// Subtracts a line fitted over the elevations, weighted by information. A ring without information
 /// has no part in the fit and keeps its zero.
-void BeamCalibration::keep_nominal_mean(const BeamTable& beams) {
+void BeamCalibration::subtract_common_line(const BeamTable& beams) {
   const auto rings = static_cast<std::size_t>(beams.ring_count);
   Eigen::Matrix2d H = Eigen::Matrix2d::Identity();  // invertible without any information
   Eigen::Vector2d b = Eigen::Vector2d::Zero();
@@ -53,7 +49,8 @@ void BeamCalibration::keep_nominal_mean(const BeamTable& beams) {
   }
   const Eigen::Vector2d common = H.ldlt().solve(b);
   for (std::size_t ring = 0; ring < rings; ++ring) {
-    const double known = elevation_information_[ring] / (elevation_information_[ring] + kPrior);
+    const double known = elevation_information_[ring] /
+                         (elevation_information_[ring] + calibration::kPriorInformation);
     correction_.elevation_rad[ring] -= known * row(ring).dot(common);
   }
 }
@@ -72,7 +69,8 @@ void BeamCalibration::observe_eccentricity(const BeamEquations& scan) {
   eccentricity_information_ = kept * eccentricity_information_ + calibration::kWeight * H;
   eccentricity_sum_ =
       kept * eccentricity_sum_ + calibration::kWeight * (b + H * correction_.eccentricity_rad);
-  const Eigen::Matrix2d all = eccentricity_information_ + kPrior * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d all =
+      eccentricity_information_ + calibration::kPriorInformation * Eigen::Matrix2d::Identity();
   const Eigen::Vector2d found_rad = all.ldlt().solve(eccentricity_sum_);
   const bool is_plausible = found_rad.norm() < calibration::kLargest_rad;
   correction_.eccentricity_rad = is_plausible ? found_rad : Eigen::Vector2d::Zero();

@@ -58,7 +58,7 @@ class BeamCalibration {
 
  private:
   void observe_elevations(const BeamEquations& scan, const BeamTable& beams);
-  void keep_nominal_mean(const BeamTable& beams);
+  void subtract_common_line(const BeamTable& beams);
   void observe_eccentricity(const BeamEquations& scan);
 
   BeamCorrection correction_;

@@ -66,8 +66,8 @@ struct Sampled {
   [[nodiscard]] Eigen::Vector3f turn(float s, const Eigen::Vector3f& p) const {
     return rotation[instant_of(s)] * p;
   }
-  [[nodiscard]] Eigen::Matrix<float, 3, 2> turn_both(float s,
-                                                     const Eigen::Matrix<float, 3, 2>& p) const {
+  [[nodiscard]] Eigen::Matrix<float, 3, 2> turn_columns(float s,
+                                                        const Eigen::Matrix<float, 3, 2>& p) const {
     return rotation[instant_of(s)] * p;
   }
   [[nodiscard]] Eigen::Vector3d origin_m(float s) const {

@@ -55,7 +55,7 @@ void Solver::add_beam_residual(const Correspondence& one, LocalMaps& maps,
   sums.pose_gradient -= (J.transpose() * wOr).cast<double>();
   if (ground) return;  // as in make_cells(): it does not show the eccentricity
   const Sensitivity by_cell = maps.at(LocalMaps::kWhole, f.kind).sensitivity_around(one.cell);
-  const Sensitivity D = sampled_.turn_both(f.s, moved_by_eccentricity(f)) - by_cell;
+  const Sensitivity D = sampled_.turn_columns(f.s, moved_by_eccentricity(f)) - by_cell;
   sums.cross_information += (J.transpose() * wO * D).cast<double>();
   sums.eccentricity_information += (D.transpose() * wO * D).cast<double>();
   sums.eccentricity_gradient -= (D.transpose() * wOr).cast<double>();

@@ -112,7 +112,7 @@ void KeyframeMap::insert_held() {
                            sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m}), f.kind};
     if (config_.calibrate_beams && f.kind == FeatureKind::structure) {
       point.sensitivity =
-          sampled_.turn_both(f.s, moved_by_eccentricity(f)) + by_pose.bottomRows<3>();
+          sampled_.turn_columns(f.s, moved_by_eccentricity(f)) + by_pose.bottomRows<3>();
       for (int k = 0; k < 2; ++k) {
         point.sensitivity.col(k) += by_pose.col(k).head<3>().cross(turned_m);
       }
