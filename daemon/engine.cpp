@@ -16,12 +16,7 @@ namespace {
 constexpr std::size_t kReportSlots = 64;  // 6 s of poses while the publisher is held up
 constexpr std::size_t kPointsSlots = 4;
 constexpr std::size_t kPacketSlots = 1024;  // 1.3 MB: 0.3 s of an HDL-64E
-// Sanitizers make the frames of functions several times as large.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t kThreadStackBytes = 4 << 20;
-#else
 constexpr std::size_t kThreadStackBytes = 512 << 10;
-#endif
 
 /// What a thread tells of itself before it starts work.
 struct ThreadStart {
