@@ -226,6 +226,15 @@ inline constexpr double kSameMotion_mps = 3.0;
 inline constexpr std::array<double, 4> kFalseMotions_mps{1.0, 2.0, 3.0, 4.0};
 /// Scans in a row for which another motion must be better.
 inline constexpr int kRefutingScans = 2;
+/// One of so many scans is laid over the others where two motions may fit: six span 1.5 s.
+inline constexpr int kAmbiguityStride = 3;
+/// m/s: step of the speeds tried then, and their number to either side. One step moves the oldest
+/// scan by a cell.
+inline constexpr double kAmbiguityStep_mps = 1.0 / 3.0;
+inline constexpr int kAmbiguitySteps = 5;
+/// Weight of the newest depth of a second minimum, and the mean depth from which the motion is
+/// ambiguous, in sigmas. Where everything is fixed the mean stays below 0.7.
+inline constexpr double kAmbiguitySmoothing = 0.5, kAmbiguousSigmas = 0.8;
 
 /// Steps of a lost place. At 20 m a step of yaw moves things as far as a step along does.
 inline constexpr double kPlaceStep_m = 1.0, kYawStep_rad = 0.05;
@@ -256,6 +265,9 @@ inline constexpr double kExceptionalSigmas = 3.0;
 inline constexpr double kMinMeanWeight = 0.3;
 /// Scans in a row without an alignment that end a session.
 inline constexpr int kScansToGiveUp = 10;
+
+/// Scans in a row with an ambiguous motion, after which the map is not believed.
+inline constexpr int kAmbiguousScans = 10;
 
 /// m/s, 1 sigma of a velocity near rest or near the tracked one. A motion farther off is another.
 inline constexpr double kSameVelocity_mps = 0.5;

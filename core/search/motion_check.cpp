@@ -7,41 +7,25 @@
 
 namespace lilo::core {
 
-MotionCheck::MotionCheck(std::size_t most_features) : grid_(most_features) {
-  for (Scan& scan : scans_) scan.points.reserve(most_features);
+MotionCheck::MotionCheck(std::size_t most_features)
+    : scans_(most_features), spaced_scans_(most_features), grid_(most_features) {
   structure_.reserve(most_features);
 }
 
 void MotionCheck::clear() {
-  count_ = 0;
+  scans_.clear();
+  spaced_scans_.clear();
+  scans_to_skip_ = 1;
   times_refuted_ = 0;
+  ambiguity_ = 0.0;
 }
 
 void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
                       const ScanTiming& timing) {
-  newest_ = (newest_ + 1) % search::kMotionScans;
-  count_ = std::min(count_ + 1, search::kMotionScans);
-  Scan& scan = scans_[newest_];
   structure_.assign(features);
-  scan.points.assign(structure_, T_begin.rotation, T_end.rotation);
-  scan.begin_m = T_begin.translation_m.head<2>();
-  scan.end_m = T_end.translation_m.head<2>();
-  scan.span_s = timing.span_s();
-  scan.end_ns = timing.end_ns;
-}
-
-/// As though the sensor had moved by so much more in each second, from the end of the newest scan.
-void MotionCheck::lay(const Scan& scan, const Displacement& more, Subsample subsample) {
-  const Scan& newest = scans_[newest_];
-  const double ago_s = seconds_between(scan.end_ns, newest.end_ns);
-  grid_.add(scan.points, scan.begin_m - newest.end_m - (ago_s + scan.span_s) * more.along_m,
-            scan.end_m - newest.end_m - ago_s * more.along_m, subsample);
-}
-
-int MotionCheck::occupied_under(const Displacement& more, Subsample subsample) {
-  grid_.clear();
-  for (const Scan& scan : scans_) lay(scan, more, subsample);
-  return grid_.occupied();
+  scans_.add(structure_, T_begin, T_end, timing);
+  scans_to_skip_ = scans_to_skip_ > 0 ? scans_to_skip_ - 1 : search::kAmbiguityStride - 1;
+  if (takes_spaced()) spaced_scans_.add(structure_, T_begin, T_end, timing);
 }
 
 /// Under motions that are faster or slower along the axis, or across it.
@@ -52,7 +36,7 @@ int MotionCheck::least_occupied(const Eigen::Vector2d& axis, Subsample subsample
     const Eigen::Vector2d across_m(-along_m.y(), along_m.x());
     for (const Eigen::Vector2d& by_m :
          {along_m, Eigen::Vector2d(-along_m), across_m, Eigen::Vector2d(-across_m)}) {
-      least = std::min(least, occupied_under({.along_m = by_m}, subsample));
+      least = std::min(least, scans_.occupied_under({.along_m = by_m}, subsample, grid_));
     }
   }
   return least;
@@ -60,17 +44,13 @@ int MotionCheck::least_occupied(const Eigen::Vector2d& axis, Subsample subsample
 
 bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
   // A motion that is clearly better with all points is mostly better with a quarter of them too.
-  if (least_occupied(axis, Subsample::quarter) >= occupied_under({}, Subsample::quarter)) {
+  if (least_occupied(axis, Subsample::quarter) >=
+      scans_.occupied_under({}, Subsample::quarter, grid_)) {
     return false;
   }
-  const int tracked = occupied_under({}, Subsample::all);
+  const int tracked = scans_.occupied_under({}, Subsample::all, grid_);
   const int least = least_occupied(axis, Subsample::all);
-  int alone = 0;
-  for (const Scan& scan : scans_) {
-    grid_.clear();
-    lay(scan, {}, Subsample::all);
-    alone += grid_.occupied();
-  }
+  const int alone = scans_.occupied_alone(grid_);
   // Scans that hardly have cells in common tell nothing: then the number of all cells counts. The
   // best of sixteen false motions is sometimes two sigmas better when someone carries the sensor.
   return is_significant(alone - least, alone - tracked, search::kPreferSigmas) &&
@@ -78,9 +58,33 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
 }
 
 bool MotionCheck::is_refuted(const Eigen::Vector2d& axis) {
-  if (count_ < search::kMotionScans) return false;
+  if (!scans_.is_full()) return false;
   times_refuted_ = is_clearly_better(axis) ? times_refuted_ + 1 : 0;
   return times_refuted_ >= search::kRefutingScans;
+}
+
+void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis) {
+  if (!takes_spaced() || !spaced_scans_.is_full()) return;
+  ambiguity_ += search::kAmbiguitySmoothing * (depth_of_second_minimum(axis) - ambiguity_);
+}
+
+/// Of the cells occupied over the speed along the axis, forwards and backwards from the tracked
+/// motion, in sigmas of that count: how far it falls from the highest value before. Negative where
+/// it only rises.
+double MotionCheck::depth_of_second_minimum(const Eigen::Vector2d& axis) {
+  const double tracked = spaced_scans_.occupied_under({}, Subsample::all, grid_);
+  double deepest = -std::numeric_limits<double>::max();
+  for (const double direction : {-1.0, 1.0}) {
+    double highest = tracked;
+    for (int step = 1; step <= search::kAmbiguitySteps; ++step) {
+      const Eigen::Vector2d by_m = direction * step * search::kAmbiguityStep_mps * axis;
+      const double occupied =
+          spaced_scans_.occupied_under({.along_m = by_m}, Subsample::all, grid_);
+      deepest = std::max(deepest, highest - occupied);
+      highest = std::max(highest, occupied);
+    }
+  }
+  return deepest / std::sqrt(tracked);
 }
 
 }  // namespace lilo::core

@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/constants.hpp"
-#include "core/motion/scan_timing.hpp"
-#include "core/pose.hpp"
-#include "core/search/hypothesis.hpp"
-#include "core/search/top_down_grid.hpp"
+#include "core/search/tracked_scans.hpp"
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace lilo::core {
 
-/// Whether the last scans agree better under another motion than the one tracked.
+/// Whether the last scans agree better, or nearly as well, under another motion than the one
+/// tracked.
 ///
 /// Where little structure stands beside a road, a truck ahead has more features that tell the
 /// motion along the road than all posts together. The alignment may then follow the truck: the
 /// truck fits, and the posts count as moving. But if the scans of the last half second are laid
 /// over each other as they were tracked, everything that is fixed leaves a trail, and the scans
 /// share more cells under another motion along the road.
+///
+/// Between two lanes that move together it is not known which of two motions is the true one. The
+/// number of occupied cells over the speed along the road then has a second minimum beside that of
+/// the tracked motion. Where everything is fixed it has one minimum, however rough the tracking is.
 ///
 /// Not thread-safe; no allocation after construction.
 class MotionCheck {
@@ -35,23 +34,22 @@ class MotionCheck {
   /// To be called once after each add(). Whether another motion was significantly better both now
   /// and the last time. `axis`: horizontal unit vector along or across the surroundings.
   bool is_refuted(const Eigen::Vector2d& axis);
+  /// The same after each is_refuted(): looks for a second minimum over 1.5 s (kAmbiguityStride).
+  void observe_ambiguity(const Eigen::Vector2d& axis);
+  /// Whether there has been one for some time.
+  [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }
 
  private:
-  struct Scan {
-    TopDownPoints points;
-    Eigen::Vector2d begin_m, end_m;
-    double span_s = 0.0;
-    std::int64_t end_ns = 0;
-  };
-  void lay(const Scan& scan, const Displacement& more, Subsample subsample);
-  int occupied_under(const Displacement& more, Subsample subsample);
+  [[nodiscard]] bool takes_spaced() const { return scans_to_skip_ == 0; }
   int least_occupied(const Eigen::Vector2d& axis, Subsample subsample);
   bool is_clearly_better(const Eigen::Vector2d& axis);
+  double depth_of_second_minimum(const Eigen::Vector2d& axis);
 
-  std::array<Scan, search::kMotionScans> scans_;
-  std::size_t count_ = 0, newest_ = 0;
-  int times_refuted_ = 0;      // on end
-  StructurePoints structure_;  // of the newest
+  TrackedScans scans_, spaced_scans_;  // every scan; one of kAmbiguityStride
+  int scans_to_skip_ = 1;              // 0: the newest is one of the spaced ones
+  int times_refuted_ = 0;              // on end
+  double ambiguity_ = 0.0;             // sigmas
+  StructurePoints structure_;          // of the newest
   TopDownGrid grid_;
 };
 

@@ -10,6 +10,16 @@
 #include <optional>
 
 namespace lilo::core {
+namespace {
+
+/// The horizontal direction of which the scan tells least: along a road or across it.
+Eigen::Vector2d least_known_axis(const Solution& solution) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> by_information(
+      solution.data_information.block<2, 2>(3, 3));
+  return by_information.eigenvectors().col(0);
+}
+
+}  // namespace
 
 Tracker::Tracker(const OdometryConfig& config)
     : selection_(config.default_profile.ground_features, config.default_profile.structure_features),
@@ -55,6 +65,8 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
                      : alignment_.is_explained ? MapUse::keyframe
                                                : MapUse::end_only;
   if (use == MapUse::keyframe) calibrate();
+  // Of this scan it is known too late: its pose is out.
+  if (is_checked()) motion_check_.observe_ambiguity(least_known_axis(alignment_.solution));
   local_.grow_map(scan_, features, alignment_.solution, use, calibration_.sensitivity());
   hook(Stage::update_map);
 }
@@ -62,7 +74,8 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
 /// Not in rooms: little of the floor is seen there.
 void Tracker::calibrate() {
   const Eigen::Vector3d& place_m = local_.state().T_odom_sensor.translation_m;
-  const bool is_sure = phase_ == Phase::tracking && alignment_.solution.converged && !scan_.is_room;
+  const bool is_sure = phase_ == Phase::tracking && alignment_.solution.converged &&
+                       !scan_.is_room && !motion_check_.is_ambiguous();
   if (!calibrates_ || !is_sure || !calibration_.is_due(place_m)) return;
   calibration_.observe(local_.beam_equations(*scan_.features, alignment_.solution.trajectory),
                        beams_, place_m);
@@ -184,10 +197,14 @@ void Tracker::accept(const Prior& prior) {
   if (!is_lost) local_.observe_stationary();
 }
 
+/// Scans before a gap, or before the clock was set, cannot be laid over this one.
+bool Tracker::is_checked() const {
+  return phase_ == Phase::tracking && alignment_.status != TrackingStatus::lost;
+}
+
 /// Whether another motion explains the last scans better, so that the map may be wrong.
 bool Tracker::is_refuted() {
-  // Scans before a gap, or before the clock was set, cannot be laid over this one.
-  if (phase_ != Phase::tracking || alignment_.status == TrackingStatus::lost) {
+  if (!is_checked()) {
     motion_check_.clear();
     return false;
   }
@@ -195,9 +212,15 @@ bool Tracker::is_refuted() {
   const Pose& T_end = local_.state().T_odom_sensor;
   const Pose T_begin = scan_.timing.motion_compensated ? T_end : solution.trajectory.at(0.0);
   motion_check_.add(*scan_.features, T_begin, T_end, scan_.timing);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> by_information(
-      solution.data_information.block<2, 2>(3, 3));
-  return motion_check_.is_refuted(by_information.eigenvectors().col(0));
+  return motion_check_.is_refuted(least_known_axis(solution));
+}
+
+/// Whether a time ends in which two motions were equally possible. The map is that of one of them,
+/// and how far the sensor came meanwhile is not known.
+bool Tracker::was_long_ambiguous() {
+  const int scans = session_.ambiguous_scans;
+  session_.ambiguous_scans = motion_check_.is_ambiguous() ? scans + 1 : 0;
+  return session_.ambiguous_scans == 0 && scans >= tracking::kAmbiguousScans;
 }
 
 /// Decides whether the session is over.
@@ -209,7 +232,8 @@ void Tracker::watch_session() {
   }
   const bool refuted = is_refuted();
   if (refuted) alignment_.status = TrackingStatus::lost;
-  session_.is_over = refuted || session_.unexplained_scans == tracking::kScansToGiveUp;
+  session_.is_over =
+      refuted || was_long_ambiguous() || session_.unexplained_scans == tracking::kScansToGiveUp;
 }
 
 Estimate Tracker::estimate(const Scan& scan) const {
@@ -233,7 +257,8 @@ Estimate Tracker::estimate(const Scan& scan) const {
   const WeakDirections& weak = alignment_.weak;
   e.weak_directions = weak.all;
   e.weak_count = weak.count;
-  if (weak.count > 0 && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
+  const bool is_doubtful = weak.count > 0 || motion_check_.is_ambiguous();
+  if (is_doubtful && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
   e.covariance = translation_first(local_.covariance());
   e.has_covariance = e.covariance.allFinite();
   e.restarts = session_.restarts;

@@ -30,7 +30,8 @@ namespace lilo::core {
 /// A new session begins with an empty map and the phase `starting`, from
 ///
 ///     any        ten scans, each with enough features, were not explained by the map
-///     tracking   another motion explains the last scans better (MotionCheck)
+///     tracking   another motion explains the last scans better, or did so as well for a second
+///                and no longer does (MotionCheck)
 ///     lost       no scan was aligned for 2.5 s (motion::kLongestGap_s), unless the sensor was
 ///                stationary or is exactly where it was predicted
 enum class Phase : std::uint8_t { starting, tracking, lost };
@@ -67,6 +68,7 @@ class Tracker {
     std::uint32_t restarts = 0;
     bool is_over = false;       ///< the next scan begins another one
     int unexplained_scans = 0;  ///< in a row, with enough features
+    int ambiguous_scans = 0;    ///< in a row
   };
   void begin_session();
   void begin_map();
@@ -77,7 +79,9 @@ class Tracker {
   [[nodiscard]] bool is_lost(const Solution& solution) const;
   [[nodiscard]] Alignment judge(const Solution& solution) const;
   void accept(const Prior& prior);
+  [[nodiscard]] bool is_checked() const;
   [[nodiscard]] bool is_refuted();
+  [[nodiscard]] bool was_long_ambiguous();
   void watch_session();
   void calibrate();
   [[nodiscard]] Estimate estimate(const Scan& scan) const;

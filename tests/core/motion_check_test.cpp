@@ -111,5 +111,79 @@ TEST(MotionCheck, AfterAClearItBeginsAgain) {
   }
 }
 
+/// Posts beside the road, and two lanes of cars between them that drive alike. Where everything is
+/// seen of a sensor at `tracked_mps`, each point is off by up to `rough_m`.
+class Lanes {
+ public:
+  Lanes(int posts, int cars, double cars_mps, double rough_m)
+      : cars_mps_(cars_mps), rough_m_(rough_m) {
+    for (int k = 0; k < posts; ++k)
+      posts_m_.emplace_back(random(-40.0, 60.0), k % 2 == 0 ? -9.0 : 9.0);
+    for (int k = 0; k < cars; ++k)
+      cars_m_.emplace_back(random(-40.0, 60.0), k % 2 == 0 ? -3.5 : 3.5);
+  }
+
+  std::vector<Feature> scan(double end_s) {
+    std::vector<Feature> features;
+    const auto add = [&](const Eigen::Vector2d& p_m, double mps) {
+      for (int k = 0; k < 3; ++k) {
+        const double s = random(0.0, 1.0), at_s = end_s - (1.0 - s) * kSpan_s;
+        Feature f{};
+        f.x_m =
+            static_cast<float>(p_m.x() + (mps - kSpeed_mps) * at_s + random(-rough_m_, rough_m_));
+        f.y_m = static_cast<float>(p_m.y() + random(-rough_m_, rough_m_));
+        f.s = static_cast<float>(s);
+        f.kind = FeatureKind::structure;
+        features.push_back(f);
+      }
+    };
+    for (const Eigen::Vector2d& post : posts_m_) add(post, 0.0);
+    for (const Eigen::Vector2d& car : cars_m_) add(car, cars_mps_);
+    return features;
+  }
+
+ private:
+  double random(double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random_);
+  }
+  std::minstd_rand random_{11};
+  std::vector<Eigen::Vector2d> posts_m_, cars_m_;
+  double cars_mps_, rough_m_;
+};
+
+/// Scans of 100 after which the motion is ambiguous.
+int ambiguous_scans(Lanes lanes, double tracked_mps) {
+  MotionCheck check(2000);
+  int ambiguous = 0;
+  for (int k = 1; k <= 100; ++k) {
+    const double end_s = kSpan_s * k;
+    Pose begin, end;
+    begin.translation_m.x() = tracked_mps * (end_s - kSpan_s);
+    end.translation_m.x() = tracked_mps * end_s;
+    check.add(lanes.scan(end_s), begin, end, timing(1e9 * end_s));
+    check.is_refuted({1.0, 0.0});
+    check.observe_ambiguity({1.0, 0.0});
+    if (check.is_ambiguous()) ++ambiguous;
+  }
+  return ambiguous;
+}
+
+TEST(MotionCheck, BetweenTwoLanesTheMotionIsAmbiguousWhicheverIsTracked) {
+  constexpr double kCars_mps = 1.0;
+  const Lanes lanes(120, 120, kCars_mps, 0.05);
+  EXPECT_GT(ambiguous_scans(lanes, kSpeed_mps), 60);
+  EXPECT_GT(ambiguous_scans(lanes, kSpeed_mps - kCars_mps), 60);
+}
+
+TEST(MotionCheck, WhereEverythingIsFixedTheMotionIsNotAmbiguous) {
+  EXPECT_EQ(ambiguous_scans({150, 0, 0.0, 0.05}, kSpeed_mps), 0);
+  EXPECT_EQ(ambiguous_scans({150, 0, 0.0, 0.4}, kSpeed_mps), 0) << "tracked roughly";
+  EXPECT_EQ(ambiguous_scans({8, 0, 0.0, 0.05}, kSpeed_mps), 0) << "a field with few posts";
+}
+
+TEST(MotionCheck, AFewCarsDoNotMakeItAmbiguous) {
+  EXPECT_EQ(ambiguous_scans({150, 8, 1.0, 0.05}, kSpeed_mps), 0);
+}
+
 }  // namespace
 }  // namespace lilo::core

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/search/tracked_scans.hpp"
+
+#include <algorithm>
+
+namespace lilo::core {
+
+TrackedScans::TrackedScans(std::size_t most_features) {
+  for (TrackedScan& scan : scans_) scan.points.reserve(most_features);
+}
+
+void TrackedScans::add(const StructurePoints& structure, const Pose& T_begin, const Pose& T_end,
+                       const ScanTiming& timing) {
+  newest_ = (newest_ + 1) % scans_.size();
+  count_ = std::min(count_ + 1, scans_.size());
+  TrackedScan& scan = scans_[newest_];
+  scan.points.assign(structure, T_begin.rotation, T_end.rotation);
+  scan.begin_m = T_begin.translation_m.head<2>();
+  scan.end_m = T_end.translation_m.head<2>();
+  scan.span_s = timing.span_s();
+  scan.end_ns = timing.end_ns;
+}
+
+/// From the end of the newest scan.
+void TrackedScans::lay(const TrackedScan& scan, const Displacement& more, Subsample subsample,
+                       TopDownGrid& grid) const {
+  const TrackedScan& newest = scans_[newest_];
+  const double ago_s = seconds_between(scan.end_ns, newest.end_ns);
+  grid.add(scan.points, scan.begin_m - newest.end_m - (ago_s + scan.span_s) * more.along_m,
+           scan.end_m - newest.end_m - ago_s * more.along_m, subsample);
+}
+
+int TrackedScans::occupied_under(const Displacement& more, Subsample subsample,
+                                 TopDownGrid& grid) const {
+  grid.clear();
+  for (const TrackedScan& scan : scans_) lay(scan, more, subsample, grid);
+  return grid.occupied();
+}
+
+int TrackedScans::occupied_alone(TopDownGrid& grid) const {
+  int occupied = 0;
+  for (const TrackedScan& scan : scans_) {
+    grid.clear();
+    lay(scan, {}, Subsample::all, grid);
+    occupied += grid.occupied();
+  }
+  return occupied;
+}
+
+}  // namespace lilo::core

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/constants.hpp"
+#include "core/motion/scan_timing.hpp"
+#include "core/pose.hpp"
+#include "core/search/hypothesis.hpp"
+#include "core/search/top_down_grid.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace lilo::core {
+
+/// The structure of a scan, with the poses between which it was measured.
+struct TrackedScan {
+  TopDownPoints points;
+  Eigen::Vector2d begin_m, end_m;
+  double span_s = 0.0;
+  std::int64_t end_ns = 0;
+};
+
+/// The last scans as they were tracked, laid over each other under other motions.
+///
+/// Not thread-safe; no allocation after construction.
+class TrackedScans {
+ public:
+  /// `most_features`: of one scan.
+  explicit TrackedScans(std::size_t most_features);
+
+  void clear() { count_ = 0; }
+  /// The next scan; it replaces the oldest.
+  void add(const StructurePoints& structure, const Pose& T_begin, const Pose& T_end,
+           const ScanTiming& timing);
+  [[nodiscard]] bool is_full() const { return count_ == scans_.size(); }
+  /// Cells that all scans occupy together, as though the sensor had moved by `more` in each second
+  /// in addition to how it was tracked. Only of what is full.
+  int occupied_under(const Displacement& more, Subsample subsample, TopDownGrid& grid) const;
+  /// The sum of the cells that each scan occupies alone.
+  int occupied_alone(TopDownGrid& grid) const;
+
+ private:
+  void lay(const TrackedScan& scan, const Displacement& more, Subsample subsample,
+           TopDownGrid& grid) const;
+
+  std::array<TrackedScan, search::kMotionScans> scans_;
+  std::size_t count_ = 0, newest_ = 0;
+};
+
+}  // namespace lilo::core
