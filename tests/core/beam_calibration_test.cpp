@@ -32,7 +32,7 @@ void point_at(double range_m, double elevation_rad, double azimuth_rad, Point& p
 
 /// The return as the sensor reports it, whose beam points a little elsewhere than it believes.
 void report_wrongly(Return& r) {
-  const Eigen::Vector3d p(r.x_m, r.y_m, r.z_m);
+  const Eigen::Vector3d p = Eigen::Vector3f(r.x_m, r.y_m, r.z_m).cast<double>();
   const double azimuth_rad = std::atan2(p.y(), p.x());
   const double elevation_rad = std::atan2(p.z(), p.head<2>().norm());
   point_at(p.norm(), elevation_rad - elevation_error_rad(r.ring),

@@ -23,7 +23,7 @@ class KeyframeMapTest : public testing::Test {
  protected:
   /// The yard from `x_m`, as the scan after the last one.
   bool grow(double x_m, MapUse use = MapUse::keyframe, int matched = 1000) {
-    const Pose T{Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}};
+    Pose T{Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}};
     const std::uint64_t index = count_++;
     const test::ObservedScan scan(
         test::yard(), [&](double) { return T; }, index);
@@ -112,7 +112,7 @@ TEST_F(KeyframeMapTest, TheNextScanPutsTheEndOfAKeyframeRight) {
 // From a room through a door: the keyframe was seen in the room, the next scan outside.
 TEST_F(KeyframeMapTest, AKeyframeEntersAtTheLevelOfItsOwnSurroundings) {
   fill();
-  const Pose T{Eigen::Quaterniond::Identity(), {9.0, 0.0, 0.0}};
+  Pose T{Eigen::Quaterniond::Identity(), {9.0, 0.0, 0.0}};
   const auto take = [&](std::size_t finest_level, MapUse use) {
     const test::ObservedScan scan(
         test::yard(), [&](double) { return T; }, count_++);

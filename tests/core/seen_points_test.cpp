@@ -66,9 +66,9 @@ TEST(SeenPoints, AreSpreadEvenly) {
   odometry.aligned_points(80, points_m);
   std::array<int, 8> in_octant{};
   for (const Eigen::Vector3f& p_m : points_m) {
-    const double part =
-        (std::atan2(double{p_m.y()}, double{p_m.x()}) + std::numbers::pi) / (2 * std::numbers::pi);
-    ++in_octant[std::min<std::size_t>(static_cast<std::size_t>(part * 8.0), 7)];
+    constexpr float kPi = std::numbers::pi_v<float>;
+    const float part = (std::atan2(p_m.y(), p_m.x()) + kPi) / (2.0F * kPi);
+    ++in_octant[std::min<std::size_t>(static_cast<std::size_t>(part * 8.0F), 7)];
   }
   for (const int count : in_octant) EXPECT_GE(count, 4);
 }

@@ -57,7 +57,7 @@ TEST(StationaryDetector, TheHypothesisIsThePlaceWithoutSpeedAndKeepsWhatIsKnownO
 Solution alignment(double x_m, double structure_inliers, double times) {
   Solution solution;
   solution.trajectory.T_begin.translation_m.x() = x_m;
-  solution.trajectory.knots = Unknowns::Zero(2 * kKnotSize);
+  solution.trajectory.knots = Unknowns::Zero(Eigen::Index{2} * kKnotSize);
   solution.structure_inliers = structure_inliers;
   solution.motion_information = Matrix6d::Identity();
   solution.data_information = 1e4 * Matrix6d::Identity();

@@ -18,7 +18,7 @@ class TrackerPhase : public testing::Test {
     const Scan scan = test::scan_of(
         scene, test::even_beams(16, -15.0, 15.0), 900, [&](double) { return T; }, index);
     std::vector<Feature>& features = image_.build(scan);
-    const Estimate estimate = tracker_.align(scan, features, {});
+    Estimate estimate = tracker_.align(scan, features, {});
     tracker_.update_map(features, {});
     return estimate;
   }
@@ -32,7 +32,7 @@ class TrackerPhase : public testing::Test {
         },
         index);
     std::vector<Feature>& features = image_.build(scan);
-    const Estimate estimate = tracker_.align(scan, features, {});
+    Estimate estimate = tracker_.align(scan, features, {});
     tracker_.update_map(features, {});
     return estimate;
   }
