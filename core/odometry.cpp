@@ -66,6 +66,16 @@ void Odometry::update_map(const ScanFeatures& features, StageHook hook) {
   std::visit([&](auto& profile) { profile.update_map(features.all, hook); }, impl_->profile);
 }
 
+void Odometry::resume_beams(const BeamEstimate& kept) {
+  auto* tracker = std::get_if<core::Tracker>(&impl_->profile);
+  if (tracker != nullptr) tracker->resume_beams(kept);
+}
+
+BeamEstimate Odometry::beam_estimate() const {
+  const auto* tracker = std::get_if<core::Tracker>(&impl_->profile);
+  return tracker != nullptr ? tracker->beam_estimate() : BeamEstimate{};
+}
+
 std::vector<Eigen::Vector3f> Odometry::map_points() const {
   return std::visit([](const auto& profile) { return profile.map_points(); }, impl_->profile);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/calibration/beam_estimate.hpp"
 #include "core/estimate.hpp"
 #include "core/feature_extractor.hpp"
 #include "core/odometry_config.hpp"
@@ -37,6 +38,13 @@ class Odometry {
   Estimate align(const Scan& scan, ScanFeatures& features, StageHook hook = {});
   /// Adds the scan just aligned to the map. To be called once after each align().
   void update_map(const ScanFeatures& features, StageHook hook = {});
+
+  /// Before the first scan: begins with what an earlier run found of the sensor's beams. It is
+  /// dropped where the sensor has another number of rings, where calibrate_beams is off, and by
+  /// profile paper.
+  void resume_beams(const BeamEstimate& kept);
+  /// What has been found of the beams so far; profile paper: nothing.
+  [[nodiscard]] BeamEstimate beam_estimate() const;
 
   /// The local map in the odometry frame (m), in no particular order: profile default, the mean of
   /// every fine cell; paper, both map clouds. Allocates: for saving, not for every scan.

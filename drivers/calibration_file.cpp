@@ -2,6 +2,7 @@
 #include "drivers/calibration.hpp"
 #include "drivers/calibration_xml.hpp"
 #include "drivers/packet_source.hpp"
+#include "drivers/text_file.hpp"
 
 #include <yaml-cpp/yaml.h>
 
@@ -90,21 +91,6 @@ Calibration read_yaml(const std::string& path, const std::string& text) {
   return calibration;
 }
 
-// A pipe would be waited for, for ever.
-std::string read_text(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error))
-    throw DriverError(path + ": expected a calibration file, found " +
-                      (error ? error.message() : "no regular file"));
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw DriverError(path + ": calibration cannot be opened: " + std::strerror(errno));
-  constexpr std::size_t kMaxBytes = 1U << 20U;
-  std::string text(kMaxBytes, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
-}
-
 }  // namespace
 
 void check_laser_count(const std::string& name, std::size_t count) {
@@ -129,7 +115,7 @@ Calibration parse_calibration(const std::string& name, const std::string& text) 
 }
 
 Calibration load_calibration(const std::string& path) {
-  return parse_calibration(path, read_text(path));
+  return parse_calibration(path, read_regular_file(path, "calibration"));
 }
 
 std::string stored_calibration_path(const std::string& state_directory) {

@@ -5,7 +5,50 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
+#include <cmath>
+
 namespace lilo::core {
+namespace {
+
+double sigma_of(double information) {
+  return 1.0 / std::sqrt(information + calibration::kPriorInformation);
+}
+
+/// Without the information of the prior, and no more than kKeptSigma_rad has.
+double kept_information(double sigma_rad) {
+  const double believed_rad = std::max(sigma_rad, calibration::kKeptSigma_rad);
+  return std::max(0.0, 1.0 / (believed_rad * believed_rad) - calibration::kPriorInformation);
+}
+
+}  // namespace
+
+void BeamCalibration::resume(const BeamEstimate& kept) {
+  ring_count_ = kept.ring_count;
+  correction_.elevation_rad = kept.elevation_rad;
+  correction_.eccentricity_rad = {kept.eccentricity_rad[0], kept.eccentricity_rad[1]};
+  std::transform(kept.elevation_sigma_rad.begin(), kept.elevation_sigma_rad.end(),
+                 elevation_information_.begin(), kept_information);
+  const double information = kept_information(kept.eccentricity_sigma_rad);
+  eccentricity_information_ = information * Eigen::Matrix2d::Identity();
+  eccentricity_sum_ = (information + calibration::kPriorInformation) * correction_.eccentricity_rad;
+}
+
+void BeamCalibration::begin_scan(const BeamTable& beams) {
+  if (ring_count_ != 0 && ring_count_ != beams.ring_count) *this = {};
+  ring_count_ = beams.ring_count;
+}
+
+BeamEstimate BeamCalibration::estimate() const {
+  BeamEstimate out;
+  out.ring_count = ring_count_;
+  out.elevation_rad = correction_.elevation_rad;
+  std::transform(elevation_information_.begin(), elevation_information_.end(),
+                 out.elevation_sigma_rad.begin(), sigma_of);
+  out.eccentricity_rad = {correction_.eccentricity_rad[0], correction_.eccentricity_rad[1]};
+  out.eccentricity_sigma_rad = sigma_of(0.5 * eccentricity_information_.trace());
+  return out;
+}
 
 bool BeamCalibration::is_due(const Eigen::Vector3d& place_m) const {
   return !last_place_m_ || (place_m - *last_place_m_).norm() > calibration::kApart_m;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/calibration/beam_correction.hpp"
+#include "core/calibration/beam_estimate.hpp"
 #include "core/pose.hpp"
 
 #include <Eigen/Core>
@@ -46,6 +47,13 @@ struct BeamEquations {
 class BeamCalibration {
  public:
   [[nodiscard]] const BeamCorrection& correction() const { return correction_; }
+  /// Begins with what an earlier run found. It is believed less than it says (kKeptSigma_rad), so
+  /// that another sensor of the same kind is learnt soon.
+  void resume(const BeamEstimate& kept);
+  /// What was found of the sensor with these beams. What was kept of one with another number of
+  /// rings is dropped.
+  void begin_scan(const BeamTable& beams);
+  [[nodiscard]] BeamEstimate estimate() const;
   /// Of the last scan that was observed.
   [[nodiscard]] const PoseSensitivity& sensitivity() const { return sensitivity_; }
   /// Whether the sensor has moved far enough since the last observation. At the same place the
@@ -61,6 +69,7 @@ class BeamCalibration {
   void subtract_common_line(const BeamTable& beams);
   void observe_eccentricity(const BeamEquations& scan);
 
+  int ring_count_ = 0;  // 0: of no sensor yet
   BeamCorrection correction_;
   std::array<double, kMaxRings> elevation_information_{};
   /// H and b of H x = b over all observations, x the whole eccentricity.

@@ -30,7 +30,12 @@ Tracker::Tracker(const OdometryConfig& config)
       motion_check_(selection_.most()),
       calibrates_(config.default_profile.calibrate_beams) {}
 
+void Tracker::resume_beams(const BeamEstimate& kept) {
+  if (calibrates_) calibration_.resume(kept);
+}
+
 Estimate Tracker::align(const Scan& scan, std::vector<Feature>& features, StageHook hook) {
+  calibration_.begin_scan(scan.beams);
   if (calibrates_) calibration_.correction().apply(features);
   beams_ = scan.beams;
   // In rooms little of the floor is seen, and ceilings hold height and attitude as well. Elsewhere

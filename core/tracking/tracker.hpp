@@ -52,7 +52,9 @@ class Tracker {
   void aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
   void mapped_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
   [[nodiscard]] Phase phase() const { return phase_; }
-  [[nodiscard]] const BeamCorrection& beam_correction() const { return calibration_.correction(); }
+  /// As in Odometry.
+  void resume_beams(const BeamEstimate& kept);
+  [[nodiscard]] BeamEstimate beam_estimate() const { return calibration_.estimate(); }
 
  private:
   /// The result of one scan.

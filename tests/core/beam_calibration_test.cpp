@@ -98,7 +98,7 @@ class BeamCalibrationInAYard : public testing::Test {
 TEST_F(BeamCalibrationInAYard, FindsEccentricityAndRings) {
   drive(400, true);
   ASSERT_EQ(last_.status, TrackingStatus::tracking);
-  const BeamCorrection& found = tracker_.beam_correction();
+  const BeamEstimate found = tracker_.beam_estimate();
   EXPECT_NEAR(found.eccentricity_rad[0], kCosine_rad, 0.3 * kMrad);
   EXPECT_NEAR(found.eccentricity_rad[1], kSine_rad, 0.3 * kMrad);
   for (const int ring : {1, 2, 3, 4}) {  // which see the ground
@@ -107,11 +107,60 @@ TEST_F(BeamCalibrationInAYard, FindsEccentricityAndRings) {
   }
 }
 
+TEST_F(BeamCalibrationInAYard, ResumesWhatAnotherRunFound) {
+  drive(200, true);
+  const BeamEstimate found = tracker_.beam_estimate();
+  Tracker next{OdometryConfig{}};
+  next.resume_beams(found);
+  Scan scan = test::scan_of(test::yard(), test::even_beams(16, -15.0, 15.0), 900, on_the_round, 0);
+  next.align(scan, image_.build(scan), {});
+  const BeamEstimate resumed = next.beam_estimate();
+  EXPECT_EQ(resumed.elevation_rad, found.elevation_rad);
+  EXPECT_EQ(resumed.eccentricity_rad, found.eccentricity_rad);
+  EXPECT_GE(resumed.eccentricity_sigma_rad, 0.28 * kMrad) << "it is believed less than it says";
+}
+
+TEST_F(BeamCalibrationInAYard, DropsWhatWasFoundOfASensorWithOtherRings) {
+  BeamEstimate kept;
+  kept.ring_count = 64;
+  kept.elevation_rad.fill(kMrad);
+  tracker_.resume_beams(kept);
+  drive(1, false);
+  EXPECT_EQ(tracker_.beam_estimate().ring_count, 16);
+  EXPECT_EQ(largest_elevation_rad(tracker_.beam_estimate()), 0.0);
+}
+
+// The sensor was replaced, and nobody deleted the file.
+TEST_F(BeamCalibrationInAYard, UnlearnsWhatWasFoundOfAnotherSensor) {
+  BeamEstimate kept;
+  kept.ring_count = 16;
+  kept.elevation_rad[2] = kMrad;
+  kept.elevation_sigma_rad.fill(0.05 * kMrad);
+  kept.eccentricity_rad = {kCosine_rad, kSine_rad};
+  kept.eccentricity_sigma_rad = 0.05 * kMrad;
+  tracker_.resume_beams(kept);
+  drive(400, false);
+  ASSERT_EQ(last_.status, TrackingStatus::tracking);
+  EXPECT_LT(largest_azimuth_rad(tracker_.beam_estimate()), 0.5 * kMrad) << "of 1.3 mrad";
+  EXPECT_NEAR(tracker_.beam_estimate().elevation_rad[2], 0.0, 0.3 * kMrad);
+}
+
+TEST(BeamCalibration, WithoutItsKeyNothingIsResumed) {
+  OdometryConfig config;
+  config.default_profile.calibrate_beams = false;
+  Tracker tracker{config};
+  BeamEstimate kept;
+  kept.ring_count = 16;
+  kept.eccentricity_rad = {kMrad, kMrad};
+  tracker.resume_beams(kept);
+  EXPECT_EQ(largest_azimuth_rad(tracker.beam_estimate()), 0.0);
+}
+
 TEST_F(BeamCalibrationInAYard, FindsNothingWhereBeamsAreExact) {
   drive(400, false);
   ASSERT_EQ(last_.status, TrackingStatus::tracking);
-  const BeamCorrection& found = tracker_.beam_correction();
-  EXPECT_LT(found.eccentricity_rad.norm(), 0.15 * kMrad);
+  const BeamEstimate found = tracker_.beam_estimate();
+  EXPECT_LT(std::hypot(found.eccentricity_rad[0], found.eccentricity_rad[1]), 0.15 * kMrad);
   for (const double error_rad : found.elevation_rad) EXPECT_NEAR(error_rad, 0.0, 0.15 * kMrad);
 }
 

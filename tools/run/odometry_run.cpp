@@ -34,9 +34,11 @@ void note_size(const Estimate& estimate, OdometryRun& run) {
 
 }  // namespace
 
-OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const SeenScan& seen) {
+OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const SeenScan& seen,
+                         const BeamEstimate& kept) {
   OdometryRun run;
   Odometry odometry(config);
+  if (kept.ring_count > 0) odometry.resume_beams(kept);
   Scan scan;
   std::int64_t busy_ns = 0;
   std::int64_t first_ns = 0;
@@ -59,6 +61,7 @@ OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const
   }
   run.wall_s = static_cast<double>(busy_ns) * 1e-9;
   run.peak_rss_mb = memory_mb("VmHWM");
+  run.beams = odometry.beam_estimate();
   run.failure = source.error();
   run.driver_counts = source.driver_counts();
   run.source_counts = source.source_counts();

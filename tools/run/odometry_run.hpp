@@ -27,6 +27,7 @@ struct OdometryRun {
   double wall_s = 0.0;       ///< of reading, decoding and odometry; what `seen` does is left out
   double recorded_s = 0.0;   ///< from the first firing to the last
   double peak_rss_mb = 0.0;  ///< most memory of this process up to here, 10^6 bytes
+  BeamEstimate beams;        ///< what was found of them
   std::string failure;  ///< why the recording ended early, ScanSource::error(); empty: it did not
 };
 
@@ -34,6 +35,8 @@ struct OdometryRun {
 using SeenScan = std::function<void(const Scan&, const Estimate&)>;
 
 /// Takes every scan of the source through a new odometry, as fast as it goes, on this thread.
-OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const SeenScan& seen);
+/// `kept`: as in Odometry::resume_beams(); default: nothing.
+OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const SeenScan& seen,
+                         const BeamEstimate& kept = {});
 
 }  // namespace lilo

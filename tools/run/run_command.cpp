@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/run/run_command.hpp"
 
+#include "drivers/beam_file.hpp"
 #include "tools/bench/benchmark_set.hpp"
 #include "tools/cli.hpp"
 #include "tools/plot/trajectory_view.hpp"
@@ -26,7 +27,7 @@ namespace {
 
 struct RunOptions {
   std::string input, config, profile, sensor;
-  std::string tum, kitti, poses, stats, picture, truth, title, map;
+  std::string tum, kitti, poses, stats, picture, truth, title, map, beams;
   double map_voxel_m = 0.1;
   MapColor map_color = MapColor::height;
 };
@@ -46,16 +47,18 @@ struct Followers {
   std::optional<VoxelMap> map;
 };
 
-OdometryRun run_with_progress(ScanSource& source, const Config& config, Followers& followers) {
+OdometryRun run_with_progress(ScanSource& source, const Config& config, const BeamEstimate& kept,
+                              Followers& followers) {
   ProgressBar bar;
   std::size_t scans = 0;
-  return run_odometry(source, config.odometry, [&](const Scan& scan, const Estimate& estimate) {
+  const auto seen = [&](const Scan& scan, const Estimate& estimate) {
     ++scans;
     if (followers.log) followers.log->add(scan, estimate);
     if (followers.picture) followers.picture->add(scan, estimate.T_odom_sensor);
     if (followers.map) followers.map->add(scan, estimate.T_odom_sensor);
     if (bar.due()) bar.show({source.progress(), scans, "scans"});
-  });
+  };
+  return run_odometry(source, config.odometry, seen, kept);
 }
 
 void write_picture(const RunOptions& options, const OdometryRun& run, const MapPoints& map) {
@@ -77,6 +80,11 @@ void write_results(const RunOptions& options, const OdometryRun& run, const Foll
     file << to_json(run);
     finish_text(file, options.stats);
   }
+  if (!options.beams.empty() && run.beams.ring_count > 0) {
+    std::ofstream file = create_text(options.beams);
+    file << beams_yaml(run.beams);
+    finish_text(file, options.beams);
+  }
   if (followers.picture) write_picture(options, run, *followers.picture);
   if (followers.map) {
     write_map(options.map, followers.map->points(), options.map_color);
@@ -88,12 +96,14 @@ void write_results(const RunOptions& options, const OdometryRun& run, const Foll
 void run_run(const RunOptions& options) {
   const Config config = tool_config(options.config, options.profile, options.sensor);
   const std::unique_ptr<ScanSource> source = open_scans(options.input, config.sensor);
+  BeamEstimate kept;
+  if (std::filesystem::exists(options.beams)) kept = read_beams(options.beams);
   try_outputs(options);
   Followers followers;
   if (!options.poses.empty()) followers.log.emplace(options.poses, config.publish);
   if (!options.picture.empty()) followers.picture.emplace();
   if (!options.map.empty()) followers.map.emplace(options.map_voxel_m);
-  const OdometryRun run = run_with_progress(*source, config, followers);
+  const OdometryRun run = run_with_progress(*source, config, kept, followers);
   if (followers.log) followers.log->finish();
   write_results(options, run, followers);
   if (!run.poses.empty()) fmt::print("{}", to_text(run));
@@ -122,6 +132,10 @@ void add_run_command(CLI::App& app) {
   sub->add_option("--poses", options->poses,
                   "Write what lilod would send, a JSON object a line: status, covariance and all");
   sub->add_option("--stats", options->stats, "Write scans, losses, CPU times, memory as JSON");
+  sub->add_option(
+      "--beams", options->beams,
+      "Begin with the errors of the beams in this file, if there is one, and write there "
+      "what was found");
   sub->add_option("--picture,--map-png", options->picture, "Draw trajectory and map from above");
   auto* map = sub->add_option("--map", options->map, "Write the whole drive's map, .ply or .pcd")
                   ->check([](const std::string& path) {

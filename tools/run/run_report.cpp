@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
 namespace lilo {
@@ -16,6 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 constexpr std::array kStatusNames = {"initializing", "tracking", "degraded", "lost"};
 
 Json json_of(const Statistics& values) {
@@ -82,6 +84,13 @@ std::string tenths_text(const OdometryRun& run) {
   return text;
 }
 
+std::string beams_line(const BeamEstimate& beams) {
+  return fmt::format(
+      "beams            corrected by up to {:.3f} deg in elevation, {:.3f} in azimuth\n",
+      kDegreesPerRadian * largest_elevation_rad(beams),
+      kDegreesPerRadian * largest_azimuth_rad(beams));
+}
+
 std::string status_text(const OdometryRun& run) {
   std::string text;
   for (std::size_t k = 0; k < kStatusNames.size(); ++k) {
@@ -133,6 +142,7 @@ std::string to_text(const OdometryRun& run) {
     fmt::format_to(out, "packets          {}, {} lost\n", driver.data_packets, driver.packets_lost);
   }
   fmt::format_to(out, "distance         {:.2f} m\n", distance_m(run));
+  if (run.beams.ring_count > 0) text += beams_line(run.beams);
   text += "CPU ms a scan       mean      p50      p99      max\n";
   for (const auto& [name, values] : stage_statistics(run.timer)) text += table_line(name, values);
   text += table_line("total", statistics(run.timer.total_ms()));

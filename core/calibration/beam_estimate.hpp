@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/scan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace lilo {
+
+/// What is known of the errors of a sensor's beams: to be kept from one run to the next.
+/// Trivially copyable, so that threads can share it.
+struct BeamEstimate {
+  int ring_count = 0;                             ///< 0: nothing is known
+  std::array<double, kMaxRings> elevation_rad{};  ///< to be added to that of each ring
+  std::array<double, kMaxRings> elevation_sigma_rad{};
+  /// To be added to an azimuth: [0] * cos(azimuth) + [1] * sin(azimuth).
+  std::array<double, 2> eccentricity_rad{};
+  double eccentricity_sigma_rad = 0.0;
+
+  bool operator==(const BeamEstimate&) const = default;
+};
+
+/// The largest correction of an elevation, and of an azimuth.
+inline double largest_elevation_rad(const BeamEstimate& beams) {
+  double largest = 0.0;
+  for (const double rad : beams.elevation_rad) largest = std::max(largest, std::abs(rad));
+  return largest;
+}
+inline double largest_azimuth_rad(const BeamEstimate& beams) {
+  return std::hypot(beams.eccentricity_rad[0], beams.eccentricity_rad[1]);
+}
+
+}  // namespace lilo
