@@ -287,9 +287,11 @@ std::vector<Key> log_keys() {
 
 std::vector<Key> state_keys() {
   return {
-      text("state.directory", LILO_MEMBER(state.directory), kOptionalPath, kRestart,
-           "Folder for what is saved on request (map.pcd, trajectory.tum) and for the calibration "
-           "read from an HDL-64E's packets. Empty: the one systemd gives us, or none."),
+      text(
+          "state.directory", LILO_MEMBER(state.directory), kOptionalPath, kRestart,
+          "Folder for what is saved on request (map.pcd, trajectory.tum), for the calibration read "
+          "from an HDL-64E's packets and for the errors of the beams found while driving "
+          "(beams.yaml). Empty: the one systemd gives us, or none."),
       integer("state.trajectory_poses", LILO_MEMBER(state.trajectory_poses), 0, 10000000, "poses",
               kRestart,
               "The latest poses of the session are remembered for a request to save them; 48 bytes "

@@ -43,7 +43,8 @@ class Odometry {
   /// dropped where the sensor has another number of rings, where calibrate_beams is off, and by
   /// profile paper.
   void resume_beams(const BeamEstimate& kept);
-  /// What has been found of the beams so far; profile paper: nothing.
+  /// What has been found of the beams so far; nothing (no rings) without calibrate_beams and by
+  /// profile paper.
   [[nodiscard]] BeamEstimate beam_estimate() const;
 
   /// The local map in the odometry frame (m), in no particular order: profile default, the mean of

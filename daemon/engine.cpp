@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "daemon/engine.hpp"
 
+#include "daemon/beam_keeper.hpp"
 #include "daemon/saver.hpp"
 
 #include <future>
@@ -80,8 +81,9 @@ Engine::Engine(const Config& config, std::unique_ptr<PacketSource> source)
       packets_(config.subscribe.packets_clients > 0 ? kPacketSlots : 0),
       receiver_(std::move(source), sensor_config(config), config.odometry, prepared(scans_, config),
                 scan_ready_, counters_, &packets_),
-      worker_(config.odometry, scans_, scan_ready_, reports_, prepared(points_, config.subscribe),
-              report_ready_, counters_) {}
+      worker_(config.odometry, kept_beams(state_directory(config.state.directory)), scans_,
+              scan_ready_, reports_, prepared(points_, config.subscribe), report_ready_,
+              counters_) {}
 
 Engine::~Engine() { stop(); }
 

@@ -39,6 +39,7 @@ class Engine {
   [[nodiscard]] Wakeup& report_ready() { return report_ready_; }
   [[nodiscard]] const PipelineCounters& counters() const { return counters_; }
   [[nodiscard]] const Receiver& receiver() const { return receiver_; }
+  [[nodiscard]] const Snapshot<BeamEstimate>& beams() const { return worker_.beams(); }
   /// The next scan starts a new odometry. False while the last one that was asked for has not
   /// begun.
   bool reset();

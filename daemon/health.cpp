@@ -85,6 +85,14 @@ void write_sensor(JsonWriter& out, const SensorStatus& sensor) {
   out.end_object();
 }
 
+void write_beams(JsonWriter& out, const Health& h) {
+  if (!h.has_beams) return;
+  out.begin_object("beams");
+  out.number("elevation_deg", h.beams_elevation_deg, 3);
+  out.number("azimuth_deg", h.beams_azimuth_deg, 3);
+  out.end_object();
+}
+
 void write_complaints(JsonWriter& out, const Health& h, std::size_t at_most) {
   const Complaints all = complaints(h);
   WordsBuffer buffer;
@@ -104,7 +112,10 @@ void write_state(JsonWriter& out, const Health& h, const Room& room) {
   if (h.pose_age_s >= 0.0) out.number("pose_age_s", h.pose_age_s, 1);
   out.text("clock", to_string(h.clock));
   out.number("sensor_silent_s", h.sensor_silent_s, 1);
-  if (room.sensor) write_sensor(out, h.sensor);
+  if (room.sensor) {
+    write_sensor(out, h.sensor);
+    write_beams(out, h);
+  }
 }
 
 std::string_view write(const std::string& session, const Health& h, const Room& room,

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
+#include <numbers>
 #include <sys/resource.h>
 #include <unistd.h>
 #include <utility>
@@ -22,6 +23,7 @@ constexpr std::uint64_t kWarmAfterScans = 10;
 constexpr double kSilentAfterS = 1.0, kNoScansAfterS = 1.5, kNoPosesAfterS = 2.0;
 constexpr std::int64_t kClockStepNs = 100'000'000;
 constexpr std::size_t kLongestInstance = 32;
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 std::uint64_t major_faults() {
   rusage usage{};
@@ -144,6 +146,13 @@ void HealthMonitor::collect_timing(Health& h) const {
   h.resident_mb = resident_mb();
 }
 
+void HealthMonitor::collect_beams(Health& h) {
+  engine_.beams().load(beams_);  // overtaken: those of a second ago
+  h.has_beams = beams_.ring_count > 0;
+  h.beams_elevation_deg = largest_elevation_rad(beams_) * kDegreesPerRadian;
+  h.beams_azimuth_deg = largest_azimuth_rad(beams_) * kDegreesPerRadian;
+}
+
 void HealthMonitor::collect(const PublisherCounts& published, Health& h) {
   const std::int64_t now_ns = monotonic_ns();
   const double elapsed_s = static_cast<double>(now_ns - last_look_ns_) * 1e-9;
@@ -155,6 +164,7 @@ void HealthMonitor::collect(const PublisherCounts& published, Health& h) {
   collect_time(now_ns, h);
   collect_counts(published, h);
   collect_timing(h);
+  collect_beams(h);
   const auto new_poses = static_cast<double>(published.poses_sent - poses_at_last_look_);
   h.rate_hz = elapsed_s > 0.0 ? new_poses / elapsed_s : 0.0;
   h.totals = fault_totals(h);

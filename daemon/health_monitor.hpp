@@ -40,12 +40,14 @@ class HealthMonitor {
   void collect_time(std::int64_t now_ns, Health& h) const;
   void collect_counts(const PublisherCounts& published, Health& h) const;
   void collect_timing(Health& h) const;
+  void collect_beams(Health& h);
 
   const Engine& engine_;
   std::string instance_;
   std::int64_t start_ns_;
   RealtimeReport realtime_;
   ReceiverState received_;
+  BeamEstimate beams_;
   RecentFaults recent_;
   RecentValues latency_ms_, processing_ms_;
   std::array<RecentValues, kStageCount> stages_ms_;

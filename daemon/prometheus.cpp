@@ -141,6 +141,11 @@ void write_scans(Metrics& m, const Health& h) {
   m.counter("lilo_scans_complete_total", "Whole revolutions.", h.driver.scans_complete);
   m.counter("lilo_scans_partial_total", "Revolutions with a hole.", h.driver.scans_partial);
   m.counter("lilo_scans_dropped_total", "Revolutions given up to keep up.", h.scans_dropped);
+  if (h.has_beams) {
+    m.gauge("lilo_beams_elevation_degrees", "Largest correction of a ring's elevation.",
+            h.beams_elevation_deg);
+    m.gauge("lilo_beams_azimuth_degrees", "Largest correction of an azimuth.", h.beams_azimuth_deg);
+  }
   m.counter("lilo_map_refused_total", "Points the full map had no room for.", h.map_refused);
   m.counter("lilo_poses_sent_total", "Poses published.", h.poses_sent);
   m.counter("lilo_poses_not_sent_total", "Poses that could not be.", h.poses_not_sent);

@@ -75,6 +75,7 @@ Service::Service(const Config& config, std::string config_path)
       monitor_(engine_, instance_name(config_path_)),
       publisher_(io_, config, engine_, monitor_, story_),
       calibration_keeper_(io_, engine_.receiver(), state_directory(config.state.directory)),
+      beam_keeper_(io_, engine_.beams(), state_directory(config.state.directory)),
       report_ready_(io_, dup(engine_.report_ready().fd())) {}
 
 void Service::run() {
@@ -97,6 +98,7 @@ void Service::run() {
   notify::stopping();
   start_stop_deadline(kStopWithinS);
   engine_.stop();
+  beam_keeper_.finish();
   publisher_.take_reports();
   publisher_.tick();
   const Health& h = publisher_.last_health();
@@ -192,6 +194,7 @@ void Service::supervise() {
   std::swap(status_, new_status_);
   story_.second(h);
   calibration_keeper_.look();
+  beam_keeper_.look();
 }
 
 void Service::await_watchdog(std::int64_t interval_us) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "config/config.hpp"
+#include "daemon/beam_keeper.hpp"
 #include "daemon/calibration_keeper.hpp"
 #include "daemon/engine.hpp"
 #include "daemon/health_monitor.hpp"
@@ -48,6 +49,7 @@ class Service {
   Story story_;
   Publisher publisher_;
   CalibrationKeeper calibration_keeper_;
+  BeamKeeper beam_keeper_;
   boost::asio::posix::stream_descriptor report_ready_;
 
   std::string status_, new_status_;

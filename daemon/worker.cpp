@@ -32,8 +32,8 @@ StageHook StageTimer::hook() {
   return {done, this};
 }
 
-Worker::Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready,
-               ReportRing& reports, PointsOutput points, Wakeup& report_ready,
+Worker::Worker(const OdometryConfig& config, const BeamEstimate& kept, ScanRing& scans,
+               Wakeup& scan_ready, ReportRing& reports, PointsOutput points, Wakeup& report_ready,
                PipelineCounters& counters)
     : config_(config),
       odometry_(config),
@@ -42,7 +42,9 @@ Worker::Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready
       reports_(reports),
       points_(points),
       report_ready_(report_ready),
-      counters_(counters) {}
+      counters_(counters) {
+  if (kept.ring_count > 0) odometry_->resume_beams(kept);
+}
 
 void Worker::run() {
   while (!counters_.stop.load(std::memory_order_relaxed)) {
@@ -70,7 +72,9 @@ void Worker::copy_map(std::uint64_t asked) {
 }
 
 void Worker::begin_again(std::uint64_t resets) {
+  const BeamEstimate beams = odometry_->beam_estimate();  // the sensor is the same
   odometry_.emplace(config_);
+  odometry_->resume_beams(beams);
   seq_ = 0;
   restarts_ = 0;
   resets_ = resets;
@@ -100,6 +104,7 @@ void Worker::align(ScanSlot& slot) {
 void Worker::update_map(const ScanSlot& slot) {
   timer_ = {.last_ns = monotonic_ns()};
   odometry_->update_map(slot.features, timer_.hook());
+  beams_.store(odometry_->beam_estimate());
 }
 
 void Worker::report(const ScanSlot& slot, const Estimate& estimate) {

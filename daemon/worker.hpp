@@ -3,6 +3,7 @@
 
 #include "core/odometry.hpp"
 #include "daemon/pipeline.hpp"
+#include "daemon/snapshot.hpp"
 #include "daemon/wakeup.hpp"
 
 #include <array>
@@ -29,8 +30,10 @@ struct PointsOutput {
 /// Odometry does, for a reset, and to copy the map.
 class Worker {
  public:
-  Worker(const OdometryConfig& config, ScanRing& scans, Wakeup& scan_ready, ReportRing& reports,
-         PointsOutput points, Wakeup& report_ready, PipelineCounters& counters);
+  /// `kept`: what an earlier run found of the beams.
+  Worker(const OdometryConfig& config, const BeamEstimate& kept, ScanRing& scans,
+         Wakeup& scan_ready, ReportRing& reports, PointsOutput points, Wakeup& report_ready,
+         PipelineCounters& counters);
 
   /// Until counters.stop; signal scan_ready after setting it.
   void run();
@@ -38,6 +41,8 @@ class Worker {
   /// The copy that counters.maps_asked asked for. For the one who asked, once maps_done has
   /// followed and until maps_asked changes again.
   [[nodiscard]] MapCopy& map_copy() { return map_copy_; }
+  /// What has been found of the beams up to the last scan.
+  [[nodiscard]] const Snapshot<BeamEstimate>& beams() const { return beams_; }
 
  private:
   void copy_map(std::uint64_t asked);
@@ -61,6 +66,7 @@ class Worker {
   std::uint32_t restarts_ = 0;  // of the odometry in force
   StageTimer timer_;
   MapCopy map_copy_;
+  Snapshot<BeamEstimate> beams_;
 };
 
 }  // namespace lilo

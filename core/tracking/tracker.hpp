@@ -54,7 +54,9 @@ class Tracker {
   [[nodiscard]] Phase phase() const { return phase_; }
   /// As in Odometry.
   void resume_beams(const BeamEstimate& kept);
-  [[nodiscard]] BeamEstimate beam_estimate() const { return calibration_.estimate(); }
+  [[nodiscard]] BeamEstimate beam_estimate() const {
+    return calibrates_ ? calibration_.estimate() : BeamEstimate{};
+  }
 
  private:
   /// The result of one scan.

@@ -144,6 +144,22 @@ TEST(Health, SaysThatTheMapIsFullAndThatSocketsFail) {
   }
 }
 
+TEST(Health, SaysByHowMuchTheBeamsAreCorrected) {
+  Health h = a_health();
+  JsonWriter out;
+  EXPECT_FALSE(json::parse(write_health("0123456789abcdef", h, out))["health"].contains("beams"));
+  h.has_beams = true;
+  h.beams_elevation_deg = 0.0931;
+  h.beams_azimuth_deg = 0.0762;
+  const json m = json::parse(write_health("0123456789abcdef", h, out))["health"];
+  EXPECT_EQ(m["beams"], json::parse(R"({"elevation_deg":0.093,"azimuth_deg":0.076})"));
+  std::string text;
+  write_prometheus("0123456789abcdef", h, text);
+  EXPECT_NE(text.find("\nlilo_beams_elevation_degrees{instance=\"front\"} 0.0931\n"),
+            std::string::npos)
+      << text;
+}
+
 TEST(RecentFaults, AreForgottenAfterTenSeconds) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   RecentFaults recent;

@@ -49,7 +49,8 @@ class WorkerTest : public testing::Test {
   Wakeup scan_ready_{Wakeup::Mode::blocking}, report_ready_{Wakeup::Mode::polled};
   PipelineCounters counters_;
   PointsRing points_{2};
-  Worker worker_{{}, scans_, scan_ready_, reports_, {points_, 50, 40}, report_ready_, counters_};
+  Worker worker_{{},       {}, scans_, scan_ready_, reports_, {points_, 50, 40}, report_ready_,
+                 counters_};
   std::size_t waiting_ = 0;
   std::uint64_t first_ = 0;
 };
@@ -113,6 +114,26 @@ TEST_F(WorkerTest, GivesNoPointsUnasked) {
   EXPECT_EQ(points_.size(), 0U);
 }
 
+// The map is begun anew; the sensor is the same.
+TEST_F(WorkerTest, KeepsTheErrorsOfTheBeamsThroughAReset) {
+  BeamEstimate kept;
+  kept.ring_count = 16;
+  kept.elevation_rad[4] = 1e-3;
+  kept.elevation_sigma_rad.fill(1e-4);
+  Worker worker({}, kept, scans_, scan_ready_, reports_, {points_, 50, 40}, report_ready_,
+                counters_);
+  counters_.resets_asked = 1;
+  std::thread thread([&] { worker.run(); });
+  while (scans_.size() > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  counters_.stop = true;
+  scan_ready_.signal();
+  thread.join();
+  EXPECT_EQ(counters_.resets_done, 1U);
+  BeamEstimate beams;
+  ASSERT_TRUE(worker.beams().load(beams));
+  EXPECT_NEAR(beams.elevation_rad[4], 1e-3, 2e-4) << "but for what it learnt since";
+}
+
 /// Both threads at once, as fast as they go. Slots: of the ring between them.
 class ReceiverAndWorker : public testing::TestWithParam<std::size_t> {};
 
@@ -128,7 +149,7 @@ TEST_P(ReceiverAndWorker, MakeThePosesOfOneThread) {
   Receiver receiver(std::make_unique<RoundRoomSource>(kPackets), sensor, {}, scans, scan_ready,
                     counters);
   PointsRing points(4);
-  Worker worker({}, scans, scan_ready, reports, {points, 0, 0}, report_ready, counters);
+  Worker worker({}, {}, scans, scan_ready, reports, {points, 0, 0}, report_ready, counters);
   std::thread working([&] { worker.run(); });
   std::thread receiving([&] { receiver.run(); });
   receiving.join();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/info/info_command.hpp"
 
+#include "drivers/beam_file.hpp"
+#include "tools/info/beams_text.hpp"
 #include "tools/info/info_report.hpp"
 #include "tools/terminal/progress_bar.hpp"
 #include "tools/tool_config.hpp"
@@ -28,6 +30,10 @@ RecordingInfo read_with_progress(ScanSource& source) {
 }
 
 void run_info(const InfoOptions& options) {
+  if (is_beams_file(options.input)) {
+    fmt::print("{}", to_text(read_beams(options.input)));
+    return;
+  }
   const Config config = tool_config(options.config);
   const std::unique_ptr<ScanSource> source = open_scans(options.input, config.sensor);
   const RecordingInfo info = read_with_progress(*source);
@@ -43,9 +49,11 @@ void run_info(const InfoOptions& options) {
 
 void add_info_command(CLI::App& app) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* sub = app.add_subcommand("info", "Tell what a recording holds");
-  sub->add_option("INPUT", options->input,
-                  "pcap (- is standard input), folder of KITTI scans or KITTI sequence")
+  CLI::App* sub =
+      app.add_subcommand("info", "Tell what a recording holds, or the beams.yaml of lilod");
+  sub->add_option(
+         "INPUT", options->input,
+         "pcap (- is standard input), folder of KITTI scans, KITTI sequence, or beams.yaml")
       ->required();
   sub->add_option("--config", options->config, "YAML configuration; default: what is built in");
   sub->add_flag("--json", options->json, "For programs; lists every scan that misses packets");

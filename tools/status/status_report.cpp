@@ -67,6 +67,14 @@ StatusRow sensor_row(const json& health) {
   return {"Sensor", text, silent ? Colour::bad : Colour::none};
 }
 
+void add_beams_row(const json& health, std::vector<StatusRow>& rows) {
+  if (!health.contains("beams")) return;
+  const json& beams = health["beams"];
+  rows.push_back(
+      {"Beams", fmt::format("corrected by up to {:.3f} deg in elevation, {:.3f} in azimuth",
+                            beams.value("elevation_deg", 0.0), beams.value("azimuth_deg", 0.0))});
+}
+
 StatusRow rate_row(const json& health) {
   const double rate_hz = health.value("rate_hz", 0.0);
   return {"Pose rate", fmt::format("{:.1f} Hz", rate_hz),
@@ -166,6 +174,7 @@ std::vector<StatusRow> status_rows(const StatusReport& report) {
   rows.push_back(complaints_row(health));
   rows.push_back({"Session", report.health.value("session", "")});
   rows.push_back(sensor_row(health));
+  add_beams_row(health, rows);
   rows.push_back(rate_row(health));
   add_pose_rows(report, rows);
   rows.push_back(packets_row(health));

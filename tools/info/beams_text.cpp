@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/info/beams_text.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace lilo {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+std::string row(const std::string& name, double correction_rad, double sigma_rad) {
+  return fmt::format("{:<17}{:+.3f} +- {:.3f} deg\n", name, correction_rad * kDegPerRad,
+                     sigma_rad * kDegPerRad);
+}
+
+}  // namespace
+
+bool is_beams_file(const std::string& path) { return path.ends_with(".yaml"); }
+
+std::string to_text(const BeamEstimate& beams) {
+  std::string text =
+      fmt::format("corrections that lilo found while driving, of {} rings\n", beams.ring_count);
+  for (int ring = 0; ring < beams.ring_count; ++ring) {
+    const auto k = static_cast<std::size_t>(ring);
+    if (beams.elevation_rad[k] == 0.0) continue;
+    text += row(fmt::format("elevation {:>3}", ring), beams.elevation_rad[k],
+                beams.elevation_sigma_rad[k]);
+  }
+  text += row("azimuth, cosine", beams.eccentricity_rad[0], beams.eccentricity_sigma_rad);
+  text += row("azimuth, sine", beams.eccentricity_rad[1], beams.eccentricity_sigma_rad);
+  return text + "Rings are counted from the lowest; those without a row saw no ground.\n";
+}
+
+}  // namespace lilo
