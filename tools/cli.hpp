@@ -74,6 +74,7 @@ inline std::string choices(const std::vector<std::string>& names) {
 template <typename Value>
 CLI::Option* choice(CLI::Option* option, const std::map<std::string, Value>& values) {
   std::vector<std::string> names;
+  names.reserve(values.size());
   for (const auto& [name, value] : values) names.push_back(name);
   // The last transformation is the first to run.
   return option->transform(CLI::CheckedTransformer(values).description(""))

@@ -6,8 +6,6 @@
 namespace lilo {
 
 /// The health of a VLP-16 that tracks and has lost three packets a moment ago.
-using nlohmann::json;
-
 inline Health a_health() {
   Health h;
   h.stamp_ns = 1'700'000'000'500'000'000;

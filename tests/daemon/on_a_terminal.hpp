@@ -33,6 +33,7 @@ class OnATerminal {
     pid_ = forkpty(&fd_, nullptr, nullptr, &window);
     if (pid_ != 0) return;
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     setenv("TERM", "xterm", 1);

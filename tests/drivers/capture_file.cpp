@@ -161,7 +161,7 @@ std::string write_file(const std::string& name, const std::string& bytes) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "lilo_drivers_test" /
                       test.test_suite_name() / test.name();
   std::filesystem::create_directories(folder);
-  const std::string path = folder / name;
+  std::string path = folder / name;
   std::ofstream(path, std::ios::binary) << bytes;
   return path;
 }

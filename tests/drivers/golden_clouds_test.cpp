@@ -39,11 +39,15 @@ struct CloudCase {
 void PrintTo(const CloudCase& c, std::ostream* out) { *out << c.name; }
 
 double vls128_group(std::size_t laser) {
-  const auto group = static_cast<double>(laser / 8);
+  const std::size_t bank = laser / 8;
+  const auto group = static_cast<double>(bank);
   return group + std::floor(group / 8.0);
 }
 // Ours turns the head by the measured cycle, the reference by the manual's 53.3 us.
-double vlp32c_turn(std::size_t laser) { return 2.304 * static_cast<double>(laser / 2) / 55.296; }
+double vlp32c_turn(std::size_t laser) {
+  const std::size_t firing = laser / 2;
+  return 2.304 * static_cast<double>(firing) / 55.296;
+}
 double vls128_turn(std::size_t laser) { return 2.665 * vls128_group(laser) / 55.278; }
 double vlp32c_reference_turn(std::size_t laser) {
   return 2.304 * static_cast<double>(laser) / 55.296;
@@ -218,8 +222,8 @@ TEST_P(GoldenCloud, EveryPointIsFoundOrExplained) {
   const std::string bag = std::string("real/") + c.name + ".db3";
   const std::string pcd = std::string("real/") + c.name + "_expected.pcd";
   const std::string yaml = c.banks == 4 ? "calib/nebula_VLS128.yaml" : "calib/nebula_VLP32.yaml";
-  LILO_NEED_DATA(bag.c_str());
-  LILO_NEED_DATA(pcd.c_str());
+  LILO_NEED_DATA(bag);
+  LILO_NEED_DATA(pcd);
   const Calibration table = load_calibration(test::data_path(yaml));
   auto packets = test::packets_of_bag(test::data_path(bag));
   ASSERT_EQ(packets.size(), c.packets);

@@ -89,7 +89,8 @@ void fill(PacketBytes& bytes, const RowOptions& o, const Row& row, int first, do
 
 double row_packet_us(const RowOptions& o) {
   const Row row = row_of(o);
-  return 12 / (row.banks * echoes_stride(o)) * row.cycle_us;
+  const auto cycles = 12 / (row.banks * echoes_stride(o));
+  return static_cast<double>(cycles) * row.cycle_us;
 }
 
 std::vector<TimedPacket> row_packets(int count, const RowOptions& o) {

@@ -64,6 +64,7 @@ class FlatJson {
     good_ = value("") && (skip(), at_ == text_.size());
   }
   bool good() const { return good_; }
+  // NOLINTNEXTLINE(readability-container-contains): C++17
   bool has(const std::string& path) const { return scalars_.count(path) > 0; }
   std::string text(const std::string& path) const {
     const auto found = scalars_.find(path);
@@ -279,8 +280,9 @@ class Client {
   static bool read(const FlatJson& message, const std::string& path, std::array<double, N>& out,
                    const char* names = nullptr) {
     for (std::size_t k = 0; k < N; ++k) {
-      const std::string name = names != nullptr ? std::string(1, names[k]) : std::to_string(k);
-      out[k] = message.number(path + '/' + name);
+      std::string at = path + '/';
+      at += names != nullptr ? std::string(1, names[k]) : std::to_string(k);
+      out[k] = message.number(at);
     }
     return std::all_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); });
   }
