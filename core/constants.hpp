@@ -229,10 +229,10 @@ inline constexpr double kSameMotion_mps = 3.0;
 inline constexpr std::array<double, 4> kFalseMotions_mps{1.0, 2.0, 3.0, 4.0};
 /// Scans in a row for which another motion must be better.
 inline constexpr int kRefutingScans = 2;
-/// One of so many scans is laid over the others where two motions may fit: six span 1.5 s.
+/// One of so many scans is laid over the others where two motions may fit: six span 1.5 s at 10 Hz.
 inline constexpr int kAmbiguityStride = 3;
-/// m/s: step of the speeds tried then, and their number to either side. One step moves the oldest
-/// scan by a cell.
+/// m/s: step of the speeds tried then, and their number to either side. At 10 Hz one
+/// step moves the oldest scan by a cell.
 inline constexpr double kAmbiguityStep_mps = 1.0 / 3.0;
 inline constexpr int kAmbiguitySteps = 5;
 /// Weight of the newest depth of a second minimum, and the mean depth from which the motion is

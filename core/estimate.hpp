@@ -12,7 +12,8 @@ namespace lilo {
 enum class TrackingStatus : std::uint8_t {
   initializing,  ///< no map yet, or not yet sure of the first motion
   tracking,      ///< aligned with the map
-  degraded,      ///< aligned, but the prediction held some direction, or data were missing
+  degraded,      ///< aligned, but the prediction held some direction, data were missing, or the
+                 ///< last scans fit under two motions
   lost,          ///< not aligned: the pose is the prediction; or it was just found to be wrong
 };
 
@@ -48,6 +49,8 @@ struct Estimate {
   /// `tracking`.
   std::array<WeakDirection, kMaxWeakDirections> weak_directions{};
   int weak_count = 0;
+  /// Two motions fit the last scans, as between two lanes of traffic: status `degraded`.
+  bool is_motion_ambiguous = false;
 
   /// How often a new session began: the map was given up, and another one begun where the
   /// prediction ended. Only that prediction joins poses of different counts.

@@ -17,10 +17,6 @@ namespace {
 
 constexpr int kEverySeconds = 60;
 
-void log_not_kept(const std::string& why) {
-  log_event(Event::beams_not_kept, fmt::format("errors of the beams not kept: {}", why));
-}
-
 }  // namespace
 
 BeamEstimate kept_beams(const std::string& directory) {
@@ -29,10 +25,13 @@ BeamEstimate kept_beams(const std::string& directory) {
   if (directory.empty() || !std::filesystem::exists(path, error)) return {};
   try {
     const BeamEstimate beams = read_beams(path);
-    log_event(Event::beams_resumed, fmt::format("errors of the beams as found earlier: {}", path));
+    log_event(Event::beams_resumed,
+              fmt::format("errors of the beams as found earlier, of {} rings: {}", beams.ring_count,
+                          path));
     return beams;
   } catch (const DriverError& refusal) {
-    log_not_kept(refusal.what());
+    log_event(Event::beams_not_kept,
+              fmt::format("errors of the beams not read: {}", refusal.what()));
     return {};
   }
 }
@@ -47,6 +46,12 @@ bool BeamKeeper::is_new() {
   return is_known && !(now_ == kept_);
 }
 
+void BeamKeeper::note(const std::string& error) {
+  if (!error.empty() && error != last_error_)
+    log_event(Event::beams_not_kept, fmt::format("errors of the beams not kept: {}", error));
+  last_error_ = error;
+}
+
 void BeamKeeper::look() {
   if (++seconds_ < kEverySeconds || saver_.busy()) return;
   seconds_ = 0;
@@ -56,9 +61,8 @@ void BeamKeeper::look() {
       kept_beams_path(directory_), static_cast<std::size_t>(now_.ring_count),
       [beams = now_] { return beams_yaml(beams); },
       [this](const SaveResult& result) {
-        if (result.error.empty()) return;
-        kept_ = {};
-        log_not_kept(result.error);
+        if (!result.error.empty()) kept_ = {};
+        note(result.error);
       });
 }
 
@@ -66,7 +70,7 @@ void BeamKeeper::finish() {
   if (saver_.busy() || !is_new()) return;
   const std::string path = kept_beams_path(directory_);
   const std::error_code error = replace_file(path, beams_yaml(now_));
-  if (error) log_not_kept(path + ": " + error.message());
+  note(error ? path + ": " + error.message() : "");
 }
 
 }  // namespace lilo

@@ -24,17 +24,20 @@ class BeamKeeper {
   BeamKeeper(boost::asio::io_context& io, const Snapshot<BeamEstimate>& beams,
              std::string directory);
 
-  /// Once a second. What cannot be kept is logged, and tried again a minute later.
+  /// Once a second. What cannot be kept is tried again a minute later, and logged where the reason
+  /// is another.
   void look();
   /// When the worker has ended.
   void finish();
 
  private:
   [[nodiscard]] bool is_new();
+  void note(const std::string& error);
 
   const Snapshot<BeamEstimate>& beams_;
   std::string directory_;
   BeamEstimate now_, kept_;
+  std::string last_error_;
   int seconds_ = 0;  // since the last look at the beams
   Saver saver_;
 };

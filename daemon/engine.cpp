@@ -60,6 +60,13 @@ ScanRing& prepared(ScanRing& scans, const Config& config) {
   return scans;
 }
 
+/// Nothing where no errors are estimated.
+BeamEstimate resumed_beams(const Config& config) {
+  const bool are_estimated = config.odometry.profile == Profile::default_profile &&
+                             config.odometry.default_profile.calibrate_beams;
+  return are_estimated ? kept_beams(state_directory(config.state.directory)) : BeamEstimate{};
+}
+
 PointsOutput prepared(PointsRing& points, const SubscribeConfig& config) {
   const PointsOutput out{points, static_cast<std::size_t>(config.scan_points),
                          static_cast<std::size_t>(config.map_points)};
@@ -81,9 +88,8 @@ Engine::Engine(const Config& config, std::unique_ptr<PacketSource> source)
       packets_(config.subscribe.packets_clients > 0 ? kPacketSlots : 0),
       receiver_(std::move(source), sensor_config(config), config.odometry, prepared(scans_, config),
                 scan_ready_, counters_, &packets_),
-      worker_(config.odometry, kept_beams(state_directory(config.state.directory)), scans_,
-              scan_ready_, reports_, prepared(points_, config.subscribe), report_ready_,
-              counters_) {}
+      worker_(config.odometry, resumed_beams(config), scans_, scan_ready_, reports_,
+              prepared(points_, config.subscribe), report_ready_, counters_) {}
 
 Engine::~Engine() { stop(); }
 

@@ -98,12 +98,12 @@ void Service::run() {
   notify::stopping();
   start_stop_deadline(kStopWithinS);
   engine_.stop();
-  beam_keeper_.finish();
   publisher_.take_reports();
   publisher_.tick();
   const Health& h = publisher_.last_health();
   log_event(Event::stopping, fmt::format("{} poses published, {} packets lost, {} scans dropped",
                                          h.poses_sent, h.driver.packets_lost, h.scans_dropped));
+  beam_keeper_.finish();  // last: a disk may be slow
 }
 
 // What cannot be kept there is a pity, not a reason to stand still.

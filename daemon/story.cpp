@@ -45,6 +45,7 @@ void Story::note(const PoseReport& report) {
   if (e.status == TrackingStatus::degraded) ++poses_.degraded;
   if (e.status == TrackingStatus::lost) ++poses_.lost;
   if (!report.scan_complete) ++poses_.partial;
+  if (e.is_motion_ambiguous) ++poses_.ambiguous;
   if (e.weak_count > 0 && e.weak_directions[0].from_scan < poses_.weakest_from_scan) {
     poses_.weakest_from_scan = e.weak_directions[0].from_scan;
     e.weak_directions[0].direction.cwiseAbs().maxCoeff(&poses_.weakest_axis);
@@ -79,8 +80,8 @@ void Story::session_replaced(const std::string& before, const std::string& now, 
               fmt::format("session {}: begun by a reset, in place of {}", now, before));
   } else {
     log_event(Event::session_replaced,
-              fmt::format("session {}: in place of {}, whose map was given up as lost; it begins "
-                          "where the prediction ended",
+              fmt::format("session {}: in place of {}, whose map was given up; it begins where "
+                          "the prediction ended",
                           now, before));
   }
   tracking_ = TrackingStatus::initializing;
@@ -186,6 +187,7 @@ std::string Story::why_degraded() const {
     why = fmt::format(", {} the scan said {:.0f} % only",
                       kAxes[static_cast<std::size_t>(poses_.weakest_axis)],
                       100.0 * poses_.weakest_from_scan);
+  if (poses_.ambiguous > 0) why += ", another motion fits as well (traffic beside the sensor)";
   if (poses_.partial > 0) why += fmt::format(", {} scans with holes", poses_.partial);
   return why;
 }

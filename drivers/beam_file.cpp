@@ -6,15 +6,15 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 namespace lilo {
 namespace {
 
 constexpr double kRadPerMrad = 1e-3;
-constexpr double kMost_mrad = std::numbers::pi / 180.0 / kRadPerMrad;
+constexpr double kMost_mrad = 17.5;  // 1 deg
 
 [[noreturn]] void refuse(const std::string& path, const YAML::Node& at, const std::string& what) {
   throw DriverError(path + ":" + std::to_string(at.Mark().line + 1) + ": " + what);
@@ -26,14 +26,14 @@ double angle_rad(const std::string& path, const YAML::Node& map, const std::stri
   double mrad = 0.0;
   if (!number.IsDefined() || !YAML::convert<double>::decode(number, mrad) ||
       !(std::abs(mrad) <= kMost_mrad))
-    refuse(path, map, key + ": expected milliradians, at most " + std::to_string(kMost_mrad));
+    refuse(path, map, key + ": expected milliradians, at most 17.5");
   return mrad * kRadPerMrad;
 }
 
 void read_angles(const std::string& path, const YAML::Node& root, const std::string& key,
                  std::span<double> angles_rad) {
   const YAML::Node list = root[key];
-  if (!list.IsSequence() || list.size() != angles_rad.size())
+  if (!list || !list.IsSequence() || list.size() != angles_rad.size())
     refuse(path, root, key + ": expected a list of " + std::to_string(angles_rad.size()));
   for (std::size_t k = 0; k < angles_rad.size(); ++k)
     angles_rad[k] = angle_rad(path, list, key, list[k]);
@@ -44,7 +44,7 @@ BeamEstimate read_yaml(const std::string& path, const YAML::Node& root) {
   const YAML::Node rings = root.IsMap() ? root["rings"] : YAML::Node();
   if (!rings || !YAML::convert<int>::decode(rings, beams.ring_count) || beams.ring_count < 1 ||
       beams.ring_count > kMaxRings)
-    refuse(path, root, "rings: expected a number from 1 to " + std::to_string(kMaxRings));
+    refuse(path, root, "expected lilod's beams, with rings from 1 to " + std::to_string(kMaxRings));
   const auto count = static_cast<std::size_t>(beams.ring_count);
   read_angles(path, root, "elevation_mrad", std::span(beams.elevation_rad).first(count));
   read_angles(path, root, "elevation_sigma_mrad",
@@ -52,6 +52,11 @@ BeamEstimate read_yaml(const std::string& path, const YAML::Node& root) {
   read_angles(path, root, "eccentricity_mrad", beams.eccentricity_rad);
   beams.eccentricity_sigma_rad =
       angle_rad(path, root, "eccentricity_sigma_mrad", root["eccentricity_sigma_mrad"]);
+  const std::span sigmas_rad = std::span(beams.elevation_sigma_rad).first(count);
+  const bool are_known =
+      std::all_of(sigmas_rad.begin(), sigmas_rad.end(), [](double s) { return s > 0.0; });
+  if (!are_known || !(beams.eccentricity_sigma_rad > 0.0))
+    refuse(path, root, "elevation_sigma_mrad, eccentricity_sigma_mrad: expected more than 0");
   return beams;
 }
 

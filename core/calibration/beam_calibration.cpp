@@ -4,6 +4,7 @@
 #include "core/constants.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -24,18 +25,20 @@ double kept_information(double sigma_rad) {
 }  // namespace
 
 void BeamCalibration::resume(const BeamEstimate& kept) {
-  ring_count_ = kept.ring_count;
+  ring_count_ = kept_ring_count_ = kept.ring_count;
   correction_.elevation_rad = kept.elevation_rad;
-  correction_.eccentricity_rad = {kept.eccentricity_rad[0], kept.eccentricity_rad[1]};
   std::transform(kept.elevation_sigma_rad.begin(), kept.elevation_sigma_rad.end(),
                  elevation_information_.begin(), kept_information);
+  if (largest_azimuth_rad(kept) >= calibration::kLargest_rad) return;
+  correction_.eccentricity_rad = {kept.eccentricity_rad[0], kept.eccentricity_rad[1]};
   const double information = kept_information(kept.eccentricity_sigma_rad);
   eccentricity_information_ = information * Eigen::Matrix2d::Identity();
   eccentricity_sum_ = (information + calibration::kPriorInformation) * correction_.eccentricity_rad;
 }
 
 void BeamCalibration::begin_scan(const BeamTable& beams) {
-  if (ring_count_ != 0 && ring_count_ != beams.ring_count) *this = {};
+  if (kept_ring_count_ != 0 && kept_ring_count_ != beams.ring_count) *this = {};
+  kept_ring_count_ = 0;
   ring_count_ = beams.ring_count;
 }
 
@@ -46,7 +49,11 @@ BeamEstimate BeamCalibration::estimate() const {
   std::transform(elevation_information_.begin(), elevation_information_.end(),
                  out.elevation_sigma_rad.begin(), sigma_of);
   out.eccentricity_rad = {correction_.eccentricity_rad[0], correction_.eccentricity_rad[1]};
-  out.eccentricity_sigma_rad = sigma_of(0.5 * eccentricity_information_.trace());
+  // One number for both: that of the direction seen worse. Nothing is known of what is not applied.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> by_information(eccentricity_information_);
+  const bool is_applied = !correction_.eccentricity_rad.isZero(0.0);
+  out.eccentricity_sigma_rad =
+      sigma_of(is_applied ? std::max(by_information.eigenvalues()[0], 0.0) : 0.0);
   return out;
 }
 

@@ -50,8 +50,8 @@ class BeamCalibration {
   /// Begins with what an earlier run found. It is believed less than it says (kKeptSigma_rad), so
   /// that another sensor of the same kind is learnt soon.
   void resume(const BeamEstimate& kept);
-  /// What was found of the sensor with these beams. What was kept of one with another number of
-  /// rings is dropped.
+  /// Before each scan. At the first one after resume() what was kept is dropped if it is of a
+  /// sensor with another number of rings. Of some recordings every scan has its own number.
   void begin_scan(const BeamTable& beams);
   [[nodiscard]] BeamEstimate estimate() const;
   /// Of the last scan that was observed.
@@ -69,7 +69,8 @@ class BeamCalibration {
   void subtract_common_line(const BeamTable& beams);
   void observe_eccentricity(const BeamEquations& scan);
 
-  int ring_count_ = 0;  // 0: of no sensor yet
+  int ring_count_ = 0;       // of the last scan; 0: none yet
+  int kept_ring_count_ = 0;  // of what is resumed; 0: nothing, or it was looked at
   BeamCorrection correction_;
   std::array<double, kMaxRings> elevation_information_{};
   /// H and b of H x = b over all observations, x the whole eccentricity.

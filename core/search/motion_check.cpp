@@ -73,6 +73,7 @@ void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis) {
 /// it only rises.
 double MotionCheck::depth_of_second_minimum(const Eigen::Vector2d& axis) {
   const double tracked = spaced_scans_.occupied_under({}, Subsample::all, grid_);
+  if (tracked < 1.0) return 0.0;  // no structure at all
   double deepest = -std::numeric_limits<double>::max();
   for (const double direction : {-1.0, 1.0}) {
     double highest = tracked;

@@ -34,7 +34,8 @@ class MotionCheck {
   /// To be called once after each add(). Whether another motion was significantly better both now
   /// and the last time. `axis`: horizontal unit vector along or across the surroundings.
   bool is_refuted(const Eigen::Vector2d& axis);
-  /// The same after each is_refuted(): looks for a second minimum over 1.5 s (kAmbiguityStride).
+  /// To be called once after each is_refuted(). Looks for a second minimum over 15 scans
+  /// (kAmbiguityStride).
   void observe_ambiguity(const Eigen::Vector2d& axis);
   /// Whether there has been one for some time.
   [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }

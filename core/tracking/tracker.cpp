@@ -70,7 +70,7 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
                      : alignment_.is_explained ? MapUse::keyframe
                                                : MapUse::end_only;
   if (use == MapUse::keyframe) calibrate();
-  // Of this scan it is known too late: its pose is out.
+  // The result counts from the next scan on: the pose of this one is out.
   if (is_checked()) motion_check_.observe_ambiguity(least_known_axis(alignment_.solution));
   local_.grow_map(scan_, features, alignment_.solution, use, calibration_.sensitivity());
   hook(Stage::update_map);
@@ -80,7 +80,7 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
 void Tracker::calibrate() {
   const Eigen::Vector3d& place_m = local_.state().T_odom_sensor.translation_m;
   const bool is_sure = phase_ == Phase::tracking && alignment_.solution.converged &&
-                       !scan_.is_room && !motion_check_.is_ambiguous();
+                       !scan_.is_room && !motion_check_.is_ambiguous() && !session_.is_over;
   if (!calibrates_ || !is_sure || !calibration_.is_due(place_m)) return;
   calibration_.observe(local_.beam_equations(*scan_.features, alignment_.solution.trajectory),
                        beams_, place_m);
@@ -221,11 +221,12 @@ bool Tracker::is_refuted() {
 }
 
 /// Whether a time ends in which two motions were equally possible. The map is that of one of them,
-/// and how far the sensor came meanwhile is not known.
+/// and how far the sensor came meanwhile is not known. Where the sensor was lost meanwhile, it has
+/// been found in this map.
 bool Tracker::was_long_ambiguous() {
   const int scans = session_.ambiguous_scans;
   session_.ambiguous_scans = motion_check_.is_ambiguous() ? scans + 1 : 0;
-  return session_.ambiguous_scans == 0 && scans >= tracking::kAmbiguousScans;
+  return is_checked() && session_.ambiguous_scans == 0 && scans >= tracking::kAmbiguousScans;
 }
 
 /// Decides whether the session is over.
@@ -237,8 +238,10 @@ void Tracker::watch_session() {
   }
   const bool refuted = is_refuted();
   if (refuted) alignment_.status = TrackingStatus::lost;
+  const bool is_doubtful = was_long_ambiguous();
+  if (is_doubtful) alignment_.status = TrackingStatus::degraded;
   session_.is_over =
-      refuted || was_long_ambiguous() || session_.unexplained_scans == tracking::kScansToGiveUp;
+      refuted || is_doubtful || session_.unexplained_scans == tracking::kScansToGiveUp;
 }
 
 Estimate Tracker::estimate(const Scan& scan) const {
@@ -262,7 +265,8 @@ Estimate Tracker::estimate(const Scan& scan) const {
   const WeakDirections& weak = alignment_.weak;
   e.weak_directions = weak.all;
   e.weak_count = weak.count;
-  const bool is_doubtful = weak.count > 0 || motion_check_.is_ambiguous();
+  e.is_motion_ambiguous = motion_check_.is_ambiguous();
+  const bool is_doubtful = weak.count > 0 || e.is_motion_ambiguous;
   if (is_doubtful && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
   e.covariance = translation_first(local_.covariance());
   e.has_covariance = e.covariance.allFinite();

@@ -30,8 +30,8 @@ namespace lilo::core {
 /// A new session begins with an empty map and the phase `starting`, from
 ///
 ///     any        ten scans, each with enough features, were not explained by the map
-///     tracking   another motion explains the last scans better, or did so as well for a second
-///                and no longer does (MotionCheck)
+///     tracking   another motion explains the last scans better; or two motions fitted for ten
+///                scans, and no longer do (MotionCheck)
 ///     lost       no scan was aligned for 2.5 s (motion::kLongestGap_s), unless the sensor was
 ///                stationary or is exactly where it was predicted
 enum class Phase : std::uint8_t { starting, tracking, lost };

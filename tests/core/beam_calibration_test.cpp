@@ -130,6 +130,32 @@ TEST_F(BeamCalibrationInAYard, DropsWhatWasFoundOfASensorWithOtherRings) {
   EXPECT_EQ(largest_elevation_rad(tracker_.beam_estimate()), 0.0);
 }
 
+// Scans of KITTI's odometry tell their rings anew each time.
+TEST_F(BeamCalibrationInAYard, KeepsItsEstimatesWhereTheNumberOfRingsChanges) {
+  BeamEstimate kept;
+  kept.ring_count = 16;
+  kept.elevation_rad[2] = kMrad;
+  kept.elevation_sigma_rad.fill(kMrad);
+  kept.eccentricity_sigma_rad = kMrad;
+  tracker_.resume_beams(kept);
+  for (const int rings : {16, 15, 16}) {
+    Scan scan = test::scan_of(test::yard(), test::even_beams(rings, -15.0, 15.0), 900, on_the_round,
+                              static_cast<std::uint64_t>(rings));
+    tracker_.align(scan, image_.build(scan), {});
+  }
+  EXPECT_EQ(tracker_.beam_estimate().elevation_rad[2], kMrad);
+}
+
+TEST_F(BeamCalibrationInAYard, ResumesNoImplausibleEccentricity) {
+  BeamEstimate kept;
+  kept.ring_count = 16;
+  kept.eccentricity_rad = {4.0 * kMrad, 0.0};
+  kept.eccentricity_sigma_rad = 0.1 * kMrad;
+  tracker_.resume_beams(kept);
+  EXPECT_EQ(largest_azimuth_rad(tracker_.beam_estimate()), 0.0);
+  EXPECT_DOUBLE_EQ(tracker_.beam_estimate().eccentricity_sigma_rad, kMrad) << "nothing is known";
+}
+
 // The sensor was replaced, and nobody deleted the file.
 TEST_F(BeamCalibrationInAYard, UnlearnsWhatWasFoundOfAnotherSensor) {
   BeamEstimate kept;

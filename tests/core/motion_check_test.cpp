@@ -111,8 +111,8 @@ TEST(MotionCheck, AfterAClearItBeginsAgain) {
   }
 }
 
-/// Posts beside the road, and two lanes of cars between them that drive alike. Where everything is
-/// seen of a sensor at `tracked_mps`, each point is off by up to `rough_m`.
+/// Posts beside the road, and two lanes of cars between them that drive alike, as a sensor sees
+/// them that drives at kSpeed_mps. Each point is off by up to `rough_m`.
 class Lanes {
  public:
   Lanes(int posts, int cars, double cars_mps, double rough_m)
@@ -179,6 +179,27 @@ TEST(MotionCheck, WhereEverythingIsFixedTheMotionIsNotAmbiguous) {
   EXPECT_EQ(ambiguous_scans({150, 0, 0.0, 0.05}, kSpeed_mps), 0);
   EXPECT_EQ(ambiguous_scans({150, 0, 0.0, 0.4}, kSpeed_mps), 0) << "tracked roughly";
   EXPECT_EQ(ambiguous_scans({8, 0, 0.0, 0.05}, kSpeed_mps), 0) << "a field with few posts";
+}
+
+TEST(MotionCheck, ScansWithoutStructureDoNotEndTheSearchForAmbiguity) {
+  MotionCheck check(2000);
+  const auto take = [&](int k, const std::vector<Feature>& features) {
+    Pose begin, end;
+    begin.translation_m.x() = kSpeed_mps * kSpan_s * (k - 1);
+    end.translation_m.x() = kSpeed_mps * kSpan_s * k;
+    check.add(features, begin, end, timing(1e9 * kSpan_s * k));
+    check.is_refuted({1.0, 0.0});
+    check.observe_ambiguity({1.0, 0.0});
+  };
+  for (int k = 1; k <= 40; ++k) take(k, {});
+  EXPECT_FALSE(check.is_ambiguous());
+  Lanes lanes(120, 120, 1.0, 0.05);
+  bool was_ambiguous = false;
+  for (int k = 41; k <= 100; ++k) {
+    take(k, lanes.scan(kSpan_s * k));
+    was_ambiguous |= check.is_ambiguous();
+  }
+  EXPECT_TRUE(was_ambiguous);
 }
 
 TEST(MotionCheck, AFewCarsDoNotMakeItAmbiguous) {

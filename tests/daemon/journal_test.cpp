@@ -140,6 +140,18 @@ TEST_F(StoryTest, TellsWorseAtOnceAndBetterWhenItLasts) {
   EXPECT_NE(second().find("tracking again after"), std::string::npos);
 }
 
+TEST_F(StoryTest, SaysThatTwoMotionsFit) {
+  second();
+  poses(10, TrackingStatus::tracking);
+  second();
+  report_.estimate.is_motion_ambiguous = true;
+  poses(10, TrackingStatus::degraded);
+  const std::string degraded = second();
+  EXPECT_NE(degraded.find("degraded: 10 of 10 poses, another motion fits as well"),
+            std::string::npos)
+      << degraded;
+}
+
 // Motion of 0.5 m a pose; the place found lies 2 m to the left of where it would have led.
 TEST_F(StoryTest, TellsHowFarThePredictionWasWrong) {
   second();

@@ -244,7 +244,7 @@ def carried_into_a_corridor():
         sensor.show("corridor")
         expect(case.lilod.wait(lambda h: h["session"] != before), "another session")
         case.journal("lost")
-        case.journal("session_replaced", f"in place of {before}, whose map was given up as lost")
+        case.journal("session_replaced", f"in place of {before}, whose map was given up")
         case.health(without="lost")
 
 

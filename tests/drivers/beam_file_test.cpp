@@ -73,6 +73,10 @@ TEST_F(BeamFile, RefusesWhatIsNone) {
        {std::pair{"", "rings"},
         {"[1, 2]", "rings"},
         {"rings: 129", "rings"},
+        {"rings: 1", "elevation_mrad: expected a list of 1"},
+        {"rings: 1\nelevation_mrad: [0]\nelevation_sigma_mrad: [0]\n"
+         "eccentricity_mrad: [0, 0]\neccentricity_sigma_mrad: 1",
+         "more than 0"},
         {"rings: 2\nelevation_mrad: [0]", "elevation_mrad: expected a list of 2"},
         {"rings: 1\nelevation_mrad: [nan]", "elevation_mrad"},
         {"rings: 1\nelevation_mrad: [30]", "elevation_mrad"},

@@ -2,6 +2,7 @@
 #include "tools/info/beams_text.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <numbers>
 
@@ -16,6 +17,19 @@ std::string row(const std::string& name, double correction_rad, double sigma_rad
 }
 
 }  // namespace
+
+std::string to_json(const BeamEstimate& beams) {
+  nlohmann::ordered_json json;
+  json["rings"] = beams.ring_count;
+  for (int ring = 0; ring < beams.ring_count; ++ring) {
+    const auto k = static_cast<std::size_t>(ring);
+    json["elevation_deg"].push_back(beams.elevation_rad[k] * kDegPerRad);
+    json["elevation_sigma_deg"].push_back(beams.elevation_sigma_rad[k] * kDegPerRad);
+  }
+  for (const double rad : beams.eccentricity_rad) json["azimuth_deg"].push_back(rad * kDegPerRad);
+  json["azimuth_sigma_deg"] = beams.eccentricity_sigma_rad * kDegPerRad;
+  return json.dump(2) + "\n";
+}
 
 bool is_beams_file(const std::string& path) { return path.ends_with(".yaml"); }
 

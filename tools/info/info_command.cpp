@@ -31,7 +31,8 @@ RecordingInfo read_with_progress(ScanSource& source) {
 
 void run_info(const InfoOptions& options) {
   if (is_beams_file(options.input)) {
-    fmt::print("{}", to_text(read_beams(options.input)));
+    const BeamEstimate beams = read_beams(options.input);
+    fmt::print("{}", options.json ? to_json(beams) : to_text(beams));
     return;
   }
   const Config config = tool_config(options.config);

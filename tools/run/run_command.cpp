@@ -40,6 +40,18 @@ void try_outputs(const RunOptions& options) {
   }
 }
 
+/// What the file has, if there is one; and whether it can be written.
+BeamEstimate begin_beams(const RunOptions& options, const Config& config) {
+  if (config.odometry.profile != Profile::default_profile ||
+      !config.odometry.default_profile.calibrate_beams) {
+    throw std::runtime_error(
+        "--beams: expected profile default with calibrate_beams, no errors are estimated without");
+  }
+  const bool exists = std::filesystem::exists(options.beams);
+  if (!std::ofstream(options.beams, std::ios::app)) (void)create_text(options.beams);  // says why
+  return exists ? read_beams(options.beams) : BeamEstimate{};
+}
+
 /// What is made of every scan besides its pose.
 struct Followers {
   std::optional<MapPoints> picture;
@@ -96,8 +108,7 @@ void write_results(const RunOptions& options, const OdometryRun& run, const Foll
 void run_run(const RunOptions& options) {
   const Config config = tool_config(options.config, options.profile, options.sensor);
   const std::unique_ptr<ScanSource> source = open_scans(options.input, config.sensor);
-  BeamEstimate kept;
-  if (std::filesystem::exists(options.beams)) kept = read_beams(options.beams);
+  const BeamEstimate kept = options.beams.empty() ? BeamEstimate{} : begin_beams(options, config);
   try_outputs(options);
   Followers followers;
   if (!options.poses.empty()) followers.log.emplace(options.poses, config.publish);
