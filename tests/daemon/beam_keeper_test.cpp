@@ -28,6 +28,7 @@ class BeamKeeperTest : public testing::Test {
     beams.ring_count = 16;
     beams.elevation_rad[1] = elevation_rad;
     beams.elevation_sigma_rad.fill(1e-4);
+    beams.eccentricity_sigma_rad = 1e-3;
     beams_.store(beams);
   }
   /// What the file has of ring 1.
