@@ -8,6 +8,10 @@
 #include <type_traits>
 #include <vector>
 
+// The member of Config that a key sets. (The name of a member cannot stand in parentheses.)
+#define LILO_MEMBER(name) \
+  [](Config & c) -> auto& { return c.name; }  // NOLINT
+
 /// One function per kind of key, so that a key is one line of the table. `member` is a function
 /// that takes a Config& and returns a reference to the member the key sets.
 namespace lilo::key_builders {

@@ -236,8 +236,11 @@ inline constexpr int kAmbiguityStride = 3;
 inline constexpr double kAmbiguityStep_mps = 1.0 / 3.0;
 inline constexpr int kAmbiguitySteps = 5;
 /// Weight of the newest depth of a second minimum, and the mean depth from which the motion is
-/// ambiguous, in sigmas. Where everything is fixed the mean stays below 0.7.
+/// ambiguous, in sigmas. Where everything is fixed the mean stays below 0.7
+/// in 98 of 100 scans.
 inline constexpr double kAmbiguitySmoothing = 0.5, kAmbiguousSigmas = 0.8;
+/// Scans in a row with an ambiguous motion, after which the map is not believed.
+inline constexpr int kAmbiguousScans = 10;
 
 /// Steps of a lost place. At 20 m a step of yaw moves things as far as a step along does.
 inline constexpr double kPlaceStep_m = 1.0, kYawStep_rad = 0.05;
@@ -268,9 +271,6 @@ inline constexpr double kExceptionalSigmas = 3.0;
 inline constexpr double kMinMeanWeight = 0.3;
 /// Scans in a row without an alignment that end a session.
 inline constexpr int kScansToGiveUp = 10;
-
-/// Scans in a row with an ambiguous motion, after which the map is not believed.
-inline constexpr int kAmbiguousScans = 10;
 
 /// m/s, 1 sigma of a velocity near rest or near the tracked one. A motion farther off is another.
 inline constexpr double kSameVelocity_mps = 0.5;

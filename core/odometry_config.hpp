@@ -95,4 +95,9 @@ struct OdometryConfig {
   PaperConfig paper;
 };
 
+/// Whether errors of the beams are estimated at all.
+inline bool estimates_beams(const OdometryConfig& config) {
+  return config.profile == Profile::default_profile && config.default_profile.calibrate_beams;
+}
+
 }  // namespace lilo

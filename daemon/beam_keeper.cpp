@@ -30,7 +30,7 @@ BeamEstimate kept_beams(const std::string& directory) {
                           path));
     return beams;
   } catch (const DriverError& refusal) {
-    log_event(Event::beams_not_kept,
+    log_event(Event::beams_file_failed,
               fmt::format("errors of the beams not read: {}", refusal.what()));
     return {};
   }
@@ -48,7 +48,7 @@ bool BeamKeeper::is_new() {
 
 void BeamKeeper::note(const std::string& error) {
   if (!error.empty() && error != last_error_)
-    log_event(Event::beams_not_kept, fmt::format("errors of the beams not kept: {}", error));
+    log_event(Event::beams_file_failed, fmt::format("errors of the beams not kept: {}", error));
   last_error_ = error;
 }
 

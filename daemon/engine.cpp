@@ -62,9 +62,8 @@ ScanRing& prepared(ScanRing& scans, const Config& config) {
 
 /// Nothing where no errors are estimated.
 BeamEstimate resumed_beams(const Config& config) {
-  const bool are_estimated = config.odometry.profile == Profile::default_profile &&
-                             config.odometry.default_profile.calibrate_beams;
-  return are_estimated ? kept_beams(state_directory(config.state.directory)) : BeamEstimate{};
+  if (!estimates_beams(config.odometry)) return {};
+  return kept_beams(state_directory(config.state.directory));
 }
 
 PointsOutput prepared(PointsRing& points, const SubscribeConfig& config) {

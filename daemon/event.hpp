@@ -31,7 +31,7 @@ enum class Event : std::uint8_t {
   calibration_stored,
   calibration_not_stored,
   beams_resumed,
-  beams_not_kept,
+  beams_file_failed,
   client_refused,
   saved,
   not_saved,
@@ -73,7 +73,7 @@ constexpr EventDescription describe(Event event) {
       {"34e8043eec1c4cd6ab32db8a8913d1d8", Severity::info},     // calibration_stored
       {"246a966f7fea4292a6f9641cf1a97c69", Severity::warning},  // calibration_not_stored
       {"73abed68f8fe4bbcb013ce7eabb89b8e", Severity::info},     // beams_resumed
-      {"673f0769078b4e7b87a26fb6dab9a00f", Severity::warning},  // beams_not_kept
+      {"673f0769078b4e7b87a26fb6dab9a00f", Severity::warning},  // beams_file_failed
       {"9c915a99f8ab4c80ab1ddd9243fd7549", Severity::warning},  // client_refused
       {"2a2929dfbc0244de8632edfcebaf244f", Severity::info},     // saved
       {"6e404e3473824d8ab8fd5459dc69409a", Severity::warning},  // not_saved

@@ -43,7 +43,7 @@ Worker::Worker(const OdometryConfig& config, const BeamEstimate& kept, ScanRing&
       points_(points),
       report_ready_(report_ready),
       counters_(counters) {
-  if (kept.ring_count > 0) odometry_->resume_beams(kept);
+  odometry_->resume_beams(kept);
 }
 
 void Worker::run() {

@@ -2,7 +2,7 @@
 #include "drivers/beam_file.hpp"
 
 #include "drivers/packet_source.hpp"
-#include "drivers/text_file.hpp"
+#include "drivers/regular_file.hpp"
 
 #include <yaml-cpp/yaml.h>
 

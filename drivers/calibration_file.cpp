@@ -2,7 +2,7 @@
 #include "drivers/calibration.hpp"
 #include "drivers/calibration_xml.hpp"
 #include "drivers/packet_source.hpp"
-#include "drivers/text_file.hpp"
+#include "drivers/regular_file.hpp"
 
 #include <yaml-cpp/yaml.h>
 

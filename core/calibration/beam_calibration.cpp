@@ -25,6 +25,7 @@ double kept_information(double sigma_rad) {
 }  // namespace
 
 void BeamCalibration::resume(const BeamEstimate& kept) {
+  if (kept.ring_count == 0) return;
   ring_count_ = kept_ring_count_ = kept.ring_count;
   correction_.elevation_rad = kept.elevation_rad;
   std::transform(kept.elevation_sigma_rad.begin(), kept.elevation_sigma_rad.end(),

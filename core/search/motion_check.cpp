@@ -15,17 +15,21 @@ MotionCheck::MotionCheck(std::size_t most_features)
 void MotionCheck::clear() {
   scans_.clear();
   spaced_scans_.clear();
-  scans_to_skip_ = 1;
+  scan_count_ = 0;
   times_refuted_ = 0;
   ambiguity_ = 0.0;
+  ambiguous_scans_ = 0;
+  ambiguity_ended_ = false;
 }
 
 void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
                       const ScanTiming& timing) {
   structure_.assign(features);
   scans_.add(structure_, T_begin, T_end, timing);
-  scans_to_skip_ = scans_to_skip_ > 0 ? scans_to_skip_ - 1 : search::kAmbiguityStride - 1;
-  if (takes_spaced()) spaced_scans_.add(structure_, T_begin, T_end, timing);
+  ++scan_count_;
+  if (newest_is_spaced()) spaced_scans_.add(structure_, T_begin, T_end, timing);
+  ambiguity_ended_ = !is_ambiguous() && ambiguous_scans_ >= search::kAmbiguousScans;
+  ambiguous_scans_ = is_ambiguous() ? ambiguous_scans_ + 1 : 0;
 }
 
 /// Under motions that are faster or slower along the axis, or across it.
@@ -64,7 +68,7 @@ bool MotionCheck::is_refuted(const Eigen::Vector2d& axis) {
 }
 
 void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis) {
-  if (!takes_spaced() || !spaced_scans_.is_full()) return;
+  if (!newest_is_spaced() || !spaced_scans_.is_full()) return;
   ambiguity_ += search::kAmbiguitySmoothing * (depth_of_second_minimum(axis) - ambiguity_);
 }
 

@@ -39,17 +39,24 @@ class MotionCheck {
   void observe_ambiguity(const Eigen::Vector2d& axis);
   /// Whether there has been one for some time.
   [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }
+  /// Whether it just ended after kAmbiguousScans or more. How far the sensor came meanwhile is not
+  /// known, and the map is that of one of two motions.
+  [[nodiscard]] bool ambiguity_ended() const { return ambiguity_ended_; }
 
  private:
-  [[nodiscard]] bool takes_spaced() const { return scans_to_skip_ == 0; }
+  [[nodiscard]] bool newest_is_spaced() const {
+    return (scan_count_ - 1) % search::kAmbiguityStride == 0;
+  }
   int least_occupied(const Eigen::Vector2d& axis, Subsample subsample);
   bool is_clearly_better(const Eigen::Vector2d& axis);
   double depth_of_second_minimum(const Eigen::Vector2d& axis);
 
   TrackedScans scans_, spaced_scans_;  // every scan; one of kAmbiguityStride
-  int scans_to_skip_ = 1;              // 0: the newest is one of the spaced ones
+  int scan_count_ = 0;                 // since clear()
   int times_refuted_ = 0;              // on end
   double ambiguity_ = 0.0;             // sigmas
+  int ambiguous_scans_ = 0;            // in a row
+  bool ambiguity_ended_ = false;       // with the newest
   StructurePoints structure_;          // of the newest
   TopDownGrid grid_;
 };

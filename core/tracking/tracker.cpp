@@ -220,15 +220,6 @@ bool Tracker::is_refuted() {
   return motion_check_.is_refuted(least_known_axis(solution));
 }
 
-/// Whether a time ends in which two motions were equally possible. The map is that of one of them,
-/// and how far the sensor came meanwhile is not known. Where the sensor was lost meanwhile, it has
-/// been found in this map.
-bool Tracker::was_long_ambiguous() {
-  const int scans = session_.ambiguous_scans;
-  session_.ambiguous_scans = motion_check_.is_ambiguous() ? scans + 1 : 0;
-  return is_checked() && session_.ambiguous_scans == 0 && scans >= tracking::kAmbiguousScans;
-}
-
 /// Decides whether the session is over.
 void Tracker::watch_session() {
   if (alignment_.is_explained) {
@@ -238,10 +229,9 @@ void Tracker::watch_session() {
   }
   const bool refuted = is_refuted();
   if (refuted) alignment_.status = TrackingStatus::lost;
-  const bool is_doubtful = was_long_ambiguous();
-  if (is_doubtful) alignment_.status = TrackingStatus::degraded;
-  session_.is_over =
-      refuted || is_doubtful || session_.unexplained_scans == tracking::kScansToGiveUp;
+  if (motion_check_.ambiguity_ended()) alignment_.status = TrackingStatus::degraded;
+  session_.is_over = refuted || motion_check_.ambiguity_ended() ||
+                     session_.unexplained_scans == tracking::kScansToGiveUp;
 }
 
 Estimate Tracker::estimate(const Scan& scan) const {
@@ -266,8 +256,8 @@ Estimate Tracker::estimate(const Scan& scan) const {
   e.weak_directions = weak.all;
   e.weak_count = weak.count;
   e.is_motion_ambiguous = motion_check_.is_ambiguous();
-  const bool is_doubtful = weak.count > 0 || e.is_motion_ambiguous;
-  if (is_doubtful && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
+  const bool is_partly_known = weak.count > 0 || e.is_motion_ambiguous;
+  if (is_partly_known && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
   e.covariance = translation_first(local_.covariance());
   e.has_covariance = e.covariance.allFinite();
   e.restarts = session_.restarts;

@@ -72,7 +72,6 @@ class Tracker {
     std::uint32_t restarts = 0;
     bool is_over = false;       ///< the next scan begins another one
     int unexplained_scans = 0;  ///< in a row, with enough features
-    int ambiguous_scans = 0;    ///< in a row
   };
   void begin_session();
   void begin_map();
@@ -85,7 +84,6 @@ class Tracker {
   void accept(const Prior& prior);
   [[nodiscard]] bool is_checked() const;
   [[nodiscard]] bool is_refuted();
-  [[nodiscard]] bool was_long_ambiguous();
   void watch_session();
   void calibrate();
   [[nodiscard]] Estimate estimate(const Scan& scan) const;

@@ -38,7 +38,7 @@ OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const
                          const BeamEstimate& kept) {
   OdometryRun run;
   Odometry odometry(config);
-  if (kept.ring_count > 0) odometry.resume_beams(kept);
+  odometry.resume_beams(kept);
   Scan scan;
   std::int64_t busy_ns = 0;
   std::int64_t first_ns = 0;

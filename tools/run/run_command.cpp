@@ -42,14 +42,15 @@ void try_outputs(const RunOptions& options) {
 
 /// What the file has, if there is one; and whether it can be written.
 BeamEstimate begin_beams(const RunOptions& options, const Config& config) {
-  if (config.odometry.profile != Profile::default_profile ||
-      !config.odometry.default_profile.calibrate_beams) {
+  if (!estimates_beams(config.odometry)) {
     throw std::runtime_error(
         "--beams: expected profile default with calibrate_beams, no errors are estimated without");
   }
   const bool exists = std::filesystem::exists(options.beams);
+  const BeamEstimate kept = exists ? read_beams(options.beams) : BeamEstimate{};
   if (!std::ofstream(options.beams, std::ios::app)) (void)create_text(options.beams);  // says why
-  return exists ? read_beams(options.beams) : BeamEstimate{};
+  if (!exists) std::filesystem::remove(options.beams);  // the next run could not read it empty
+  return kept;
 }
 
 /// What is made of every scan besides its pose.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "drivers/text_file.hpp"
+#include "drivers/regular_file.hpp"
 
 #include "drivers/packet_source.hpp"
 
