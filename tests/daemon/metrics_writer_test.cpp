@@ -53,6 +53,8 @@ std::error_code write_when_the_disk_answers(const std::string&, std::string_view
 
 // A disk that does not answer holds the writer's thread and nobody else, and does not go unnoticed.
 TEST(MetricsWriter, WaitsForNoDisk) {
+  disk_answers = false;
+  texts_written = 0;
   {
     MetricsWriter writer(write_when_the_disk_answers, 0s);
     EXPECT_FALSE(writer.write("a file", "taken"));
