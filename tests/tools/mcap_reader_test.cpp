@@ -109,9 +109,10 @@ TEST_F(McapReader, FindsWhatTheWriterWrote) {
 // The library that Foxglove itself uses.
 TEST_F(McapReader, FindsWhatMcapCoreWrote) {
   if (!has_mcap_core()) GTEST_SKIP() << without_mcap_core();
+  const std::string program = LILO_TOOLS_TESTS_DIR "/write_mcap.mjs";
   for (const char* how : {"chunks", "no_chunks"}) {
-    const Finished run = run_to_end({"/usr/bin/env", "node", LILO_TOOLS_TESTS_DIR "/write_mcap.mjs",
-                                     node_modules(), how, path("b.mcap")});
+    const Finished run =
+        run_to_end({"/usr/bin/env", "node", program, node_modules(), how, path("b.mcap")});
     ASSERT_EQ(run.exit_code, 0) << run.error;
     const Read found = read(path("b.mcap"));
     EXPECT_EQ(found.error, "") << how;

@@ -32,8 +32,8 @@ const std::string kHealth =
 
 /// What @mcap/core makes of a file.
 json read_by_mcap_core(const std::string& file) {
-  const Finished run = run_to_end(
-      {"/usr/bin/env", "node", LILO_TOOLS_TESTS_DIR "/read_mcap.mjs", node_modules(), file});
+  const std::string program = LILO_TOOLS_TESTS_DIR "/read_mcap.mjs";
+  const Finished run = run_to_end({"/usr/bin/env", "node", program, node_modules(), file});
   EXPECT_EQ(run.exit_code, 0) << run.error;
   return json::parse(run.output, nullptr, false);
 }

@@ -23,7 +23,7 @@ bool take(std::vector<std::uint64_t>& table, std::uint64_t key) {
 
 std::uint64_t VoxelMap::voxel_of(const Eigen::Vector3f& p_m) const {
   const auto part = [&](float v_m) {
-    const auto cell = std::llround(std::floor(double{v_m} / voxel_m_));
+    const auto cell = std::llround(std::floor(static_cast<double>(v_m) / voxel_m_));
     return static_cast<std::uint64_t>(cell + (1 << 20)) & 0x1FFFFFU;
   };
   // 21 bits an axis: 200 km of voxels of 10 cm. The top bit tells it from an empty place.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -30,7 +31,7 @@ std::string bar(double part, std::size_t width) {
 std::string time_left(double part, double first_part, double elapsed_s) {
   const double done = part - first_part;
   if (elapsed_s < kSettled_s || done <= 0.0) return {};
-  const auto left_s = static_cast<std::int64_t>(elapsed_s * (1.0 - part) / done + 0.5);
+  const auto left_s = std::llround(elapsed_s * (1.0 - part) / done);
   if (left_s < 60) return fmt::format("  {} s left", left_s);
   if (left_s < 3600) return fmt::format("  {}:{:02} min left", left_s / 60, left_s % 60);
   return fmt::format("  {}:{:02} h left", left_s / 3600, left_s / 60 % 60);

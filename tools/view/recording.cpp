@@ -22,8 +22,8 @@ constexpr std::size_t kTellEvery = 20;  // scans
 
 using Work = std::function<void(const std::atomic<bool>& stop)>;
 
-Work play_scans(const std::string& path, const Config& config, Recording::Take take,
-                Recording::Tell tell) {
+Work play_scans(const std::string& path, const Config& config, const Recording::Take& take,
+                const Recording::Tell& tell) {
   std::shared_ptr<ScanSource> source = open_scans(path, config.sensor);
   return [=](const std::atomic<bool>& stop) {
     Odometry odometry(config.odometry);
@@ -38,7 +38,7 @@ Work play_scans(const std::string& path, const Config& config, Recording::Take t
   };
 }
 
-Work play_lines(const std::string& path, Recording::Take take, Recording::Tell tell) {
+Work play_lines(const std::string& path, const Recording::Take& take, const Recording::Tell& tell) {
   auto file = std::make_shared<std::ifstream>(open_text(path));
   const auto size = static_cast<double>(std::filesystem::file_size(path));
   return [=](const std::atomic<bool>& stop) {
@@ -54,7 +54,7 @@ Work play_lines(const std::string& path, Recording::Take take, Recording::Tell t
   };
 }
 
-Work play_mcap(const std::string& path, Recording::Take take, Recording::Tell tell) {
+Work play_mcap(const std::string& path, const Recording::Take& take, const Recording::Tell& tell) {
   auto reader = std::make_shared<mcap::Reader>(path);
   return [=](const std::atomic<bool>& stop) {
     mcap::Message message;
@@ -72,18 +72,18 @@ Work play_mcap(const std::string& path, Recording::Take take, Recording::Tell te
   };
 }
 
-Work work_for(const std::string& path, const Config& config, Recording::Take take,
+Work work_for(const std::string& path, const Config& config, const Recording::Take& take,
               const Recording::Tell& tell) {
   const std::filesystem::path ending = std::filesystem::path(path).extension();
-  if (ending == ".jsonl") return play_lines(path, std::move(take), tell);
-  if (ending == ".mcap") return play_mcap(path, std::move(take), tell);
-  return play_scans(path, config, std::move(take), tell);
+  if (ending == ".jsonl") return play_lines(path, take, tell);
+  if (ending == ".mcap") return play_mcap(path, take, tell);
+  return play_scans(path, config, take, tell);
 }
 
 }  // namespace
 
-Recording::Recording(const std::string& path, const Config& config, Take take, Tell tell) {
-  Work work = work_for(path, config, std::move(take), tell);
+Recording::Recording(const std::string& path, const Config& config, const Take& take, Tell tell) {
+  Work work = work_for(path, config, take, tell);
   thread_ = std::thread([this, work = std::move(work), tell = std::move(tell)] {
     try {
       work(stop_);

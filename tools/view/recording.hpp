@@ -26,7 +26,7 @@ class Recording {
   using Tell = std::function<void(const RecordingState&)>;
 
   /// `take` and `tell` are called on the thread. Throws when the recording cannot be opened.
-  Recording(const std::string& path, const Config& config, Take take, Tell tell);
+  Recording(const std::string& path, const Config& config, const Take& take, Tell tell);
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
