@@ -45,7 +45,8 @@ std::vector<Key> default_profile_keys() {
       integer(
           "odometry.default.map_cells", LILO_MEMBER(odometry.default_profile.map_cells), 10000,
           2000000, "", kRestart,
-          "Cells of ground, and as many of structure, the map can hold: this bounds the memory."),
+          "Cells of ground, and as many of structure, the map can hold: this bounds the memory. "
+          "Where three quarters are used, nearer parts are forgotten as well."),
       real("odometry.default.map_radius_m", LILO_MEMBER(odometry.default_profile.map_radius_m),
            20.0, 300.0, "m", kRestart, "Farther parts of the map are forgotten."),
       real("odometry.default.cell_m", LILO_MEMBER(odometry.default_profile.cell_m), 0.1, 2.0, "m",

@@ -162,7 +162,14 @@ void CellMap::remove(std::size_t slot) {
   free_ = removed;
 }
 
+double CellMap::radius_part() const {
+  const double filled = static_cast<double>(used_) / config_.capacity;
+  const double beyond = std::max(0.0, filled - map::kNearlyFull) / (1.0 - map::kNearlyFull);
+  return 1.0 - (1.0 - map::kFullRadius) * beyond;
+}
+
 void CellMap::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) {
+  radius_m *= radius_part();
   const std::vector<CellTable::Slot>& slots = table_.slots();
   const std::size_t share = slots.size() / map::kSweepScans;
   const CellIndex center = index_of(center_m);

@@ -132,8 +132,9 @@ class CellMap {
   /// Forgets everything, keeps the memory.
   void clear();
 
-  /// Forgets cells farther than `radius_m` from `center_m`. Every call looks at the next small part
-  /// of the table, so that no single scan pays for the whole.
+  /// Forgets cells farther than `radius_m` from `center_m`, and nearer ones where the map is nearly
+  /// full (map::kNearlyFull), so that there is room for what comes into view. Every call looks at
+  /// the next small part of the table, so that no single scan pays for the whole.
   void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
 
   /// Calls `visit` with the mean of every cell's own points (m), in no particular order.
@@ -193,6 +194,8 @@ class CellMap {
   [[nodiscard]] Moments moments_around(const CellIndex& i) const;
   void fit(Cell& cell) const;
   void remove(std::size_t slot);
+  /// The part of the radius of forget_beyond() for which there is room.
+  [[nodiscard]] double radius_part() const;
   /// A removed cell has no place; the number of the next one stands there.
   static std::int32_t& next_free(Cell& removed) { return removed.index.x; }
 

@@ -196,6 +196,26 @@ TEST(CellMap, RefusesCellsBeyondItsCapacityAndCountsThem) {
   EXPECT_EQ(map.refused(), 15U);
 }
 
+// A wall on either side along 400 m: within 100 m there are five times as many cells as the map
+// has.
+TEST_F(Filled, ANearlyFullMapForgetsTheFarthestAndRefusesNothing) {
+  CellMap map({.capacity = 4000});
+  for (int along = 0; along < 4000; ++along) {
+    const double x_m = 0.1 * along;
+    for (int k = 0; k < 40; ++k) {
+      map.insert({x_m, k % 2 == 0 ? -5.0 : 5.0, 0.25 * k}, no_reach_);
+    }
+    map.end_keyframe();
+    map.forget_beyond({x_m, 0.0, 0.0}, 100.0);
+  }
+  EXPECT_EQ(map.refused(), 0U);
+  EXPECT_GT(map.size(), 1500);
+  for (double back_m = 0.25; back_m < 15.0; back_m += 0.5) {
+    EXPECT_NE(map.find({399.9 - back_m, 5.0, 5.0}).information, nullptr) << back_m;
+  }
+  EXPECT_EQ(map.find({320.0, 5.0, 5.0}).information, nullptr);
+}
+
 TEST_F(Filled, GivesTheMeanOfEveryCell) {
   map_.insert({0.1, 0.1, 0.1}, no_reach_);
   map_.insert({0.3, 0.1, 0.1}, no_reach_);
