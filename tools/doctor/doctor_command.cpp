@@ -5,6 +5,7 @@
 #include "tools/connection/connection.hpp"
 #include "tools/doctor/machine_checks.hpp"
 #include "tools/doctor/wire.hpp"
+#include "tools/message_numbers.hpp"
 #include "tools/terminal/printable.hpp"
 
 #include <fmt/format.h>
@@ -47,8 +48,8 @@ doctor::RunningDaemon ask_daemon(const Config& config) {
                      Connection::Milliseconds(1000));
     const nlohmann::json health = lilod.ask({{"query", "health"}}, "health").at("health");
     daemon.answers = true;
-    daemon.packets =
-        health.value("packets", nlohmann::json::object()).value("received", std::uint64_t{0});
+    if (health.contains("packets") && health["packets"].contains("received"))
+      daemon.packets = count_from(health["packets"]["received"]);
     daemon.silent_s = health.value("sensor_silent_s", 0.0);
     for (const auto& complaint : health.value("complaints", nlohmann::json::array()))
       daemon.complaints +=

@@ -2,6 +2,7 @@
 #include "tools/listen/pose_message.hpp"
 
 #include "daemon/message_head.hpp"
+#include "tools/message_numbers.hpp"
 #include "tools/terminal/printable.hpp"
 
 #include <fmt/chrono.h>
@@ -14,7 +15,6 @@
 #include <ctime>
 #include <exception>
 #include <numbers>
-#include <stdexcept>
 
 namespace lilo {
 namespace {
@@ -22,7 +22,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kLatest_s = 9'000'000'000;  // UTC: in nanoseconds the year 2255 still fits
 
 std::optional<Matrix6d> covariance_from(const json& pose) {
   if (!pose.contains("covariance")) return std::nullopt;
@@ -58,22 +57,16 @@ bool has_our_version(const json& object) {
   return v.is_string() && major_of(v.get_ref<const std::string&>()) == major_of(kProtocolVersion);
 }
 
-std::int64_t stamp_from(const json& stamp) {
-  const auto sec = stamp.at("sec").get<std::int64_t>(), nsec = stamp.at("nsec").get<std::int64_t>();
-  if (sec < 0 || sec > kLatest_s || nsec < 0 || nsec >= kSecond) throw std::out_of_range("stamp");
-  return sec * kSecond + nsec;
-}
-
 PoseMessage message_from(const json& object) {
   const json& pose = object.at("pose");
   const json& position = pose.at("position");
   const json& q = pose.at("orientation");
   const json& stamp = pose.at("stamp");
   PoseMessage message;
-  message.seq = object.at("seq").get<std::uint64_t>();
+  message.seq = count_from(object.at("seq"));
   message.session = object.value("session", "");
   message.status = pose.value("status", "");
-  message.pose.stamp_ns = stamp_from(stamp);
+  message.pose.stamp_ns = stamp_ns_from(stamp);
   message.pose.pose.translation_m = {position.at("x").get<double>(), position.at("y").get<double>(),
                                      position.at("z").get<double>()};
   message.pose.pose.rotation = Eigen::Quaterniond(q.at("w").get<double>(), q.at("x").get<double>(),
@@ -111,8 +104,8 @@ std::string health_line(const json& object) {
       "         health           {:<12}  {:g} Hz, {} packets, {} lost, {} scans dropped, latency "
       "{:.1f} ms, p99 {:.1f} ms",
       health.at("status").get<std::string>(), health.at("rate_hz").get<double>(),
-      packets.at("received").get<std::uint64_t>(), packets.at("lost").get<std::uint64_t>(),
-      health.at("scans").at("dropped").get<std::uint64_t>(), latency_ms.at("p50").get<double>(),
+      count_from(packets.at("received")), count_from(packets.at("lost")),
+      count_from(health.at("scans").at("dropped")), latency_ms.at("p50").get<double>(),
       latency_ms.at("p99").get<double>());
   for (const json& complaint : health.at("complaints")) {
     line += ", " + complaint.get<std::string>();

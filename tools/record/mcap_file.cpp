@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/record/mcap_file.hpp"
 
+#include "tools/message_numbers.hpp"
 #include "tools/record/mcap_schemas.hpp"
 
 #include <nlohmann/json.hpp>
@@ -15,8 +16,7 @@ using nlohmann::json;
 std::int64_t stamp_ns(const json& message) {
   if (!message.contains("pose"))
     return std::llround(message.value("timestamp", 0.0) * 1e6) * 1000;  // a double holds no more
-  const json& stamp = message["pose"].at("stamp");
-  return stamp.at("sec").get<std::int64_t>() * 1'000'000'000 + stamp.at("nsec").get<std::int64_t>();
+  return stamp_ns_from(message["pose"].at("stamp"));
 }
 
 bool is_valid(const json& pose) {
@@ -57,7 +57,8 @@ void McapFile::take(std::string_view datagram, const json& message, std::int64_t
   if (!message.contains("pose")) return;
   const json& pose = message["pose"];
   const std::int64_t published_ns = stamp_ns(message);
-  const auto seq = static_cast<std::uint32_t>(message.value("seq", std::uint64_t{0}));
+  const auto seq =
+      static_cast<std::uint32_t>(message.contains("seq") ? count_from(message["seq"]) : 0);
   writer_.write(pose_, seq, received_ns, published_ns, datagram);
   if (!is_valid(pose)) return;
   writer_.write(odom_, seq, received_ns, published_ns, pose_in_frame(pose).dump());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/record/recording.hpp"
 
+#include "tools/message_numbers.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -32,7 +34,7 @@ void Recording::count(const nlohmann::json& message) {
   if (!message.contains("pose")) return;
   ++counts_.poses;
   const std::string session = message.value("session", "");
-  const std::uint64_t seq = message.value("seq", std::uint64_t{0});
+  const std::uint64_t seq = message.contains("seq") ? count_from(message["seq"]) : 0;
   if (session != session_ || counts_.sessions == 0) {
     ++counts_.sessions;
   } else if (seq > next_seq_) {

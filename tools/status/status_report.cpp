@@ -2,6 +2,7 @@
 #include "tools/status/status_report.hpp"
 
 #include "tools/listen/pose_message.hpp"
+#include "tools/message_numbers.hpp"
 #include "tools/status/status_words.hpp"
 #include "tools/terminal/printable.hpp"
 
@@ -20,7 +21,7 @@ const json& section(const StatusReport& report) { return report.health.at("healt
 json part(const json& object, const char* name) { return object.value(name, json::object()); }
 
 std::uint64_t count(const json& object, const char* name) {
-  return object.value(name, std::uint64_t{0});
+  return object.contains(name) ? count_from(object[name]) : 0;
 }
 
 /// Worth a look as soon as it is not 0.

@@ -2,6 +2,7 @@
 #include "tools/view/foxglove_messages.hpp"
 
 #include "tools/bench/base64.hpp"
+#include "tools/message_numbers.hpp"
 
 #include <bit>
 #include <utility>
@@ -113,12 +114,12 @@ json foxglove_transforms(const json& pose) {
 
 bool FoxglovePoints::add(const json& message) {
   const json& points = message.at("points");
-  const auto index = points.at("index").get<std::uint64_t>();
-  const auto seq = message.at("seq").get<std::uint64_t>();
+  const auto index = count_from(points.at("index"));
+  const auto seq = count_from(message.at("seq"));
   if (seq != seq_ || index == 0) xyz_m_.clear();
   seq_ = seq;
   append_points(points, xyz_m_);
-  return index + 1 == points.at("count").get<std::uint64_t>();
+  return index + 1 == count_from(points.at("count"));
 }
 
 json FoxglovePoints::cloud(const json& stamp, const json& frame_id) const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/view/foxglove_session.hpp"
 
+#include "tools/message_numbers.hpp"
+
 #include <cmath>
 #include <utility>
 
@@ -13,11 +15,7 @@ using nlohmann::json;
 constexpr std::size_t kMostWaiting = 1000;
 
 std::int64_t stamp_of(const json& message) {
-  if (message.contains("pose")) {
-    const json& stamp = message["pose"].at("stamp");
-    return stamp.at("sec").get<std::int64_t>() * 1'000'000'000 +
-           stamp.at("nsec").get<std::int64_t>();
-  }
+  if (message.contains("pose")) return stamp_ns_from(message["pose"].at("stamp"));
   return std::llround(message.at("timestamp").get<double>() * 1e6) * 1000;
 }
 
