@@ -240,8 +240,7 @@ inline constexpr int kAmbiguityStride = 3;
 inline constexpr double kAmbiguityStep_mps = 1.0 / 3.0;
 inline constexpr int kAmbiguitySteps = 5;
 /// Weight of the newest depth of a second minimum, and the mean depth from which the motion is
-/// ambiguous, in sigmas. Where everything is fixed the mean stays below 0.7
-/// in 98 of 100 scans.
+/// ambiguous, in sigmas. Where everything is fixed the mean stays below 0.7 in 98 of 100 scans.
 inline constexpr double kAmbiguitySmoothing = 0.5, kAmbiguousSigmas = 0.8;
 /// Scans in a row with an ambiguous motion, after which the map is not believed.
 inline constexpr int kAmbiguousScans = 10;

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+
 namespace lilo {
 namespace {
 
@@ -83,11 +86,16 @@ TEST(PoseMessage, OtherObjectsAreNotPosesAndRubbishIsNoMessage) {
                           "\xff\xfe", R"({"seq":"x","pose":{"position":{}}})"}) {
     EXPECT_EQ(parse_message(bad, message), MessageKind::malformed) << bad;
   }
-  for (const char* stamp : {R"("sec":9000000001)", R"("sec":-1)", R"("sec":1e30)"}) {
+  const std::string sec = R"("sec":1715678102)", seq = R"("seq":17)";
+  for (const auto& [good, bad] : {std::pair{sec, R"("sec":9000000001)"},
+                                  {sec, R"("sec":-1)"},
+                                  {sec, R"("sec":1e30)"},
+                                  {seq, R"("seq":-1)"},
+                                  {seq, R"("seq":1.5)"},
+                                  {seq, R"("seq":1e30)"}}) {
     std::string datagram = kDatagram;
-    const std::string good = R"("sec":1715678102)";
-    datagram.replace(datagram.find(good), good.size(), stamp);
-    EXPECT_EQ(parse_message(datagram, message), MessageKind::malformed) << stamp;
+    datagram.replace(datagram.find(good), good.size(), bad);
+    EXPECT_EQ(parse_message(datagram, message), MessageKind::malformed) << bad;
   }
 }
 

@@ -48,8 +48,7 @@ doctor::RunningDaemon ask_daemon(const Config& config) {
                      Connection::Milliseconds(1000));
     const nlohmann::json health = lilod.ask({{"query", "health"}}, "health").at("health");
     daemon.answers = true;
-    if (health.contains("packets") && health["packets"].contains("received"))
-      daemon.packets = count_from(health["packets"]["received"]);
+    daemon.packets = count_in(health.value("packets", nlohmann::json::object()), "received");
     daemon.silent_s = health.value("sensor_silent_s", 0.0);
     for (const auto& complaint : health.value("complaints", nlohmann::json::array()))
       daemon.complaints +=

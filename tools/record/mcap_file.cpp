@@ -6,17 +6,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
 namespace lilo {
 namespace {
 
 using nlohmann::json;
 
 std::int64_t stamp_ns(const json& message) {
-  if (!message.contains("pose"))
-    return std::llround(message.value("timestamp", 0.0) * 1e6) * 1000;  // a double holds no more
-  return stamp_ns_from(message["pose"].at("stamp"));
+  if (message.contains("pose")) return stamp_ns_from(message["pose"].at("stamp"));
+  return message.contains("timestamp") ? timestamp_ns_from(message["timestamp"]) : 0;
 }
 
 bool is_valid(const json& pose) {
@@ -57,8 +54,7 @@ void McapFile::take(std::string_view datagram, const json& message, std::int64_t
   if (!message.contains("pose")) return;
   const json& pose = message["pose"];
   const std::int64_t published_ns = stamp_ns(message);
-  const auto seq =
-      static_cast<std::uint32_t>(message.contains("seq") ? count_from(message["seq"]) : 0);
+  const auto seq = static_cast<std::uint32_t>(count_in(message, "seq"));
   writer_.write(pose_, seq, received_ns, published_ns, datagram);
   if (!is_valid(pose)) return;
   writer_.write(odom_, seq, received_ns, published_ns, pose_in_frame(pose).dump());

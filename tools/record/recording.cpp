@@ -34,7 +34,7 @@ void Recording::count(const nlohmann::json& message) {
   if (!message.contains("pose")) return;
   ++counts_.poses;
   const std::string session = message.value("session", "");
-  const std::uint64_t seq = message.contains("seq") ? count_from(message["seq"]) : 0;
+  const std::uint64_t seq = count_in(message, "seq");
   if (session != session_ || counts_.sessions == 0) {
     ++counts_.sessions;
   } else if (seq > next_seq_) {

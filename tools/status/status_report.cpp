@@ -20,10 +20,6 @@ const json& section(const StatusReport& report) { return report.health.at("healt
 /// Something whose parts are looked up with defaults: older daemons say less.
 json part(const json& object, const char* name) { return object.value(name, json::object()); }
 
-std::uint64_t count(const json& object, const char* name) {
-  return object.contains(name) ? count_from(object[name]) : 0;
-}
-
 /// Worth a look as soon as it is not 0.
 Colour colour_of_count(std::uint64_t count) { return count > 0 ? Colour::warning : Colour::none; }
 
@@ -110,22 +106,23 @@ void add_pose_rows(const StatusReport& report, std::vector<StatusRow>& rows) {
 
 StatusRow packets_row(const json& health) {
   const json packets = part(health, "packets");
-  const std::uint64_t lost = count(packets, "lost"), received = count(packets, "received");
+  const std::uint64_t lost = count_in(packets, "lost"), received = count_in(packets, "received");
   const double all = static_cast<double>(lost + received);
   return {"Packets",
           fmt::format("{} received, {} lost ({:.2g} %), {} dropped by the kernel, {} malformed",
                       received, lost, all > 0.0 ? 100.0 * static_cast<double>(lost) / all : 0.0,
-                      count(packets, "kernel_dropped"), count(packets, "malformed")),
-          colour_of_count(count(packets, "kernel_dropped"))};
+                      count_in(packets, "kernel_dropped"), count_in(packets, "malformed")),
+          colour_of_count(count_in(packets, "kernel_dropped"))};
 }
 
 StatusRow scans_row(const json& health) {
   const json scans = part(health, "scans");
   return {"Scans",
           fmt::format("{} complete, {} partial, {} dropped, at most {} of {} waiting",
-                      count(scans, "complete"), count(scans, "partial"), count(scans, "dropped"),
-                      count(scans, "ring_high_water"), count(scans, "ring_slots")),
-          colour_of_count(count(scans, "dropped"))};
+                      count_in(scans, "complete"), count_in(scans, "partial"),
+                      count_in(scans, "dropped"), count_in(scans, "ring_high_water"),
+                      count_in(scans, "ring_slots")),
+          colour_of_count(count_in(scans, "dropped"))};
 }
 
 StatusRow quantiles_row(const char* label, const json& ms) {
@@ -134,28 +131,29 @@ StatusRow quantiles_row(const char* label, const json& ms) {
 }
 
 StatusRow sent_row(const json& health) {
-  const std::uint64_t errors = count(health, "send_errors");
+  const std::uint64_t errors = count_in(health, "send_errors");
   return {"Sent",
           fmt::format("{} poses, {} held back, {} send errors, subscribers: {}",
-                      count(health, "poses_sent"), count(health, "poses_not_sent"), errors,
-                      count(health, "clients")),
+                      count_in(health, "poses_sent"), count_in(health, "poses_not_sent"), errors,
+                      count_in(health, "clients")),
           colour_of_count(errors)};
 }
 
 StatusRow realtime_row(const json& health) {
   const json realtime = part(health, "realtime");
   const bool granted = realtime.value("as_configured", false);
-  return {"Real time",
-          fmt::format("{}: {} {} on CPU {}, {} MB locked, {} page faults",
-                      granted ? "as configured" : "NOT as configured",
-                      realtime.value("policy", "?"), realtime.value("priority", 0),
-                      realtime.value("cpus", "?"), count(realtime, "locked_kb") / 1024,
-                      count(realtime, "worker_minor_faults") + count(realtime, "major_faults")),
-          granted ? Colour::none : Colour::bad};
+  return {
+      "Real time",
+      fmt::format("{}: {} {} on CPU {}, {} MB locked, {} page faults",
+                  granted ? "as configured" : "NOT as configured", realtime.value("policy", "?"),
+                  count_in(realtime, "priority"), realtime.value("cpus", "?"),
+                  count_in(realtime, "locked_kb") / 1024,
+                  count_in(realtime, "worker_minor_faults") + count_in(realtime, "major_faults")),
+      granted ? Colour::none : Colour::bad};
 }
 
 void add_map_row(const json& health, std::vector<StatusRow>& rows) {
-  const std::uint64_t refused = count(health, "map_refused");
+  const std::uint64_t refused = count_in(health, "map_refused");
   if (refused == 0) return;
   rows.push_back({"Map", fmt::format("full: {} points left out", refused), Colour::bad});
 }

@@ -3,7 +3,6 @@
 
 #include "tools/message_numbers.hpp"
 
-#include <cmath>
 #include <utility>
 
 namespace lilo::view {
@@ -16,7 +15,7 @@ constexpr std::size_t kMostWaiting = 1000;
 
 std::int64_t stamp_of(const json& message) {
   if (message.contains("pose")) return stamp_ns_from(message["pose"].at("stamp"));
-  return std::llround(message.at("timestamp").get<double>() * 1e6) * 1000;
+  return timestamp_ns_from(message.at("timestamp"));
 }
 
 }  // namespace
