@@ -215,6 +215,16 @@ TEST(Doctor, ModelsByTheirPackets) {
   EXPECT_FALSE(identity_of(std::span(packet).first(512)));
 }
 
+// A daemon that shares its ports must name its sensor; the doctor looks at all senders.
+TEST(Doctor, SharedPortsAreWatched) {
+  UdpConfig config;
+  config.bind_address = "127.0.0.1";
+  config.data_port = config.position_port = 0;  // any
+  config.sensor_address = "127.0.0.1";
+  config.share_ports = true;
+  EXPECT_EQ(watch_wire(config, 0.1).trouble, "");
+}
+
 TEST(Doctor, OneFailureIsEnough) {
   std::vector<Finding> findings{{Verdict::good, "A", "well", ""},
                                 {Verdict::warning, "B", "so so", "try"}};

@@ -35,7 +35,7 @@ Finding from_daemon(const Config& config, const RunningDaemon& daemon) {
   if (daemon.packets == 0 || daemon.silent_s > kSilentAfterS) {
     return {Verdict::bad, "Packets",
             fmt::format("the running lilod has had none for {:.0f} s", daemon.silent_s),
-            "stop it (systemctl stop lilod) and ask again: then I can look myself"};
+            "stop it (systemctl stop lilod, or lilod@NAME) and ask again: then I can look myself"};
   }
   const std::string text = fmt::format("the running lilod has had {}", daemon.packets);
   if (daemon.complaints.empty()) return {Verdict::good, "Packets", text, ""};

@@ -71,6 +71,7 @@ Wire watch_wire(const UdpConfig& config, double seconds) {
   Wire wire;
   UdpConfig everybody = config;
   everybody.sensor_address.clear();
+  everybody.share_ports = false;  // a port is shared by those who name their sensor
   const auto before = received_by_card();
   try {
     const std::unique_ptr<UdpSource> source = open_udp(everybody);
