@@ -83,7 +83,8 @@ std::string print_reference() {
   const Config defaults;
   std::string out =
       "# Every key of the configuration file\n\n"
-      "Made by `lilod --print-reference`; a test keeps it equal to the program.\n";
+      "Made by `lilod --print-reference`; a test keeps it equal to the program. "
+      "Reload `live`: SIGHUP takes the key over; `restart`: it counts from the next start.\n";
   for (const Section& section : config_sections()) {
     out += fmt::format("\n## {}\n{}\n\n", section.path, section.meaning);
     out += "| Key | Expected | Default | Reload | Meaning |\n|---|---|---|---|---|\n";

@@ -183,7 +183,8 @@ void add_listen_command(CLI::App& app) {
   sub->add_option("--count", options->count, "End after so many poses")->check(above_zero());
   sub->add_option(
          "--timeout", options->timeout_s,
-         "End when nothing has arrived for so many seconds; an error when that is too soon")
+         "End when nothing, health included, has arrived for so many seconds; an error without a "
+         "pose, or before --count")
       ->check(above_zero());
   sub->callback([options] { run_listen(*options); });
 }
