@@ -311,10 +311,10 @@ inline constexpr double kLeastDesignEffect = 0.05;
 inline constexpr double kScansSharingErrors = 3.0;
 /// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
 inline constexpr double kMostlyTurns_m = 0.3;
-/// Keyframes that a scan sees of the map at most; the first counts as four of them.
-inline constexpr int kKeyframesInView = 13, kFirstKeyframe = 4;
-/// Part of an alignment's standard error that is the same at every keyframe.
-inline constexpr double kSteadyError = 0.5;
+/// Keyframes that a scan sees of the map at most.
+inline constexpr int kKeyframesInView = 13;
+/// Correlated error of a keyframe's alignment, in parts of its standard error.
+inline constexpr double kCorrelatedError = 0.5;
 /// 1 sigma of the path's scale: paths come out too short by up to so much of their length.
 inline constexpr double kPathScale = 3e-4;
 

@@ -6,12 +6,13 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cmath>
 
 namespace lilo::core {
 
 void Drift::begin(const Matrix6d& at_start) {
-  random_ = at_start_ = at_start;
-  steady_.setZero();
+  pose_ = at_start_ = at_start;
+  cross_.setZero();
   travelled_m_.setZero();
   coasted_s_ = 0.0;
 }
@@ -19,38 +20,41 @@ void Drift::begin(const Matrix6d& at_start) {
 void Drift::move(const Eigen::Vector3d& by_m) {
   Matrix6d F = Matrix6d::Identity();
   F.bottomLeftCorner<3, 3>() = -skew(by_m);  // rotation x by
-  random_ = F * random_ * F.transpose();
-  steady_ = F * steady_;
+  pose_ = F * pose_ * F.transpose();
+  cross_ = F * cross_;
   travelled_m_ += by_m;
 }
 
 void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor,
                     int keyframes) {
   // An error of one keyframe moves what is seen of the map by its part in it, which is larger in a
-  // young map. The first keyframe, which is aligned with nothing, counts as several.
-  const double part =
-      1.0 / std::min(keyframes + tracking::kFirstKeyframe - 1, tracking::kKeyframesInView);
-  random_ += part * part * alignment;
+  // young map.
+  const double part = 1.0 / std::min(keyframes, tracking::kKeyframesInView);
+  pose_ += part * part * alignment;
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(alignment);
   if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] >= 0.0)) return;
   Matrix6d sensor_to_odom = Matrix6d::Zero();
   sensor_to_odom.topLeftCorner<3, 3>() = R_odom_sensor.toRotationMatrix();
   sensor_to_odom.bottomRightCorner<3, 3>() = sensor_to_odom.topLeftCorner<3, 3>();
-  steady_ += tracking::kSteadyError * part * eigen.operatorSqrt() * sensor_to_odom;
+  const Matrix6d gain = tracking::kCorrelatedError * part * eigen.operatorSqrt() * sensor_to_odom;
+  cross_ *= std::exp(-1.0 / tracking::kKeyframesInView);
+  const Matrix6d shared = gain * cross_.transpose();
+  pose_ += shared + shared.transpose() + gain * gain.transpose();
+  cross_ += gain;
 }
 
 // White noise of density q makes a position uncertain by q t^3 / 3: by q t^2 dt more in a moment.
 void Drift::coast(const Eigen::Matrix3d& axes, double acceleration_density, double span_s) {
   coasted_s_ += span_s;
   const double variance = acceleration_density * coasted_s_ * coasted_s_ * span_s;
-  random_.bottomRightCorner<3, 3>() += variance * axes * axes.transpose();
+  pose_.bottomRightCorner<3, 3>() += variance * axes * axes.transpose();
 }
 
 // One scan that tells little more than nothing does not restore the velocity.
 void Drift::see(double span_s) { coasted_s_ = std::max(0.0, coasted_s_ - span_s); }
 
 Matrix6d Drift::covariance() const {
-  Matrix6d sum = random_ + steady_ * steady_.transpose();
+  Matrix6d sum = pose_;
   sum.bottomRightCorner<3, 3>() +=
       tracking::kPathScale * tracking::kPathScale * travelled_m_ * travelled_m_.transpose();
   return sum;

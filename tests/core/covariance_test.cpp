@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 namespace lilo {
 namespace {
@@ -110,23 +111,54 @@ TEST(Drift, AnErrorOfScaleGrowsWithTheDistanceFromTheStartAndComesBack) {
   EXPECT_NEAR(drift.covariance().norm(), 0.0, 1e-12);
 }
 
-// Of a keyframe's standard error a thirteenth is handed on, and half of that is steady.
-TEST(Drift, ASteadyErrorAddsUpAlongTheWayAndComesBackOnALoop) {
-  constexpr double kSigma_m = 0.01;
-  Matrix6d alignment = Matrix6d::Zero();
-  alignment(3, 3) = alignment(4, 4) = kSigma_m * kSigma_m;
+/// Of a keyframe's standard error a thirteenth is handed on, and half as much again is correlated
+/// over thirteen keyframes.
+constexpr double kPart = 1.0 / 13.0, kCorrelated = 0.5, kCorrelationKeyframes = 13.0;
+
+/// Variance of the sum of s[k] (e[k] + kCorrelated c[k]) kPart, in parts of that of one e[k], which
+/// are independent; c[k] is exponentially correlated.
+double variance_of_sum(const std::vector<double>& s) {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < s.size(); ++j) {
+    sum += s[j] * s[j];
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      const double apart = std::abs(static_cast<double>(j) - static_cast<double>(k));
+      sum += kCorrelated * kCorrelated * s[j] * s[k] * std::exp(-apart / kCorrelationKeyframes);
+    }
+  }
+  return kPart * kPart * sum;
+}
+
+/// Of x, after keyframes that look ahead (1) or back (-1).
+double variance_after(const std::vector<double>& looks) {
+  constexpr double kVariance_m2 = 1e-4;
+  constexpr int kOldMap = 100;
   const Eigen::Quaterniond ahead = Eigen::Quaterniond::Identity();
   const Eigen::Quaterniond back(0.0, 0.0, 0.0, 1.0);  // about the upright
-  constexpr int kOld = 100, kTimes = 1000;
-  const double random_m2 = kTimes * std::pow(kSigma_m / 13.0, 2);
-  core::Drift away, loop;
-  for (int k = 0; k < kTimes; ++k) {
-    away.inherit(alignment, ahead, kOld);
-    loop.inherit(alignment, k < kTimes / 2 ? ahead : back, kOld);
-  }
-  EXPECT_NEAR(away.covariance()(3, 3), random_m2 + std::pow(kTimes * 0.5 * kSigma_m / 13.0, 2),
-              1e-9);
-  EXPECT_NEAR(loop.covariance()(3, 3), random_m2, 1e-9);
+  Matrix6d alignment = Matrix6d::Zero();
+  alignment(3, 3) = alignment(4, 4) = kVariance_m2;
+  core::Drift drift;
+  for (const double look : looks) drift.inherit(alignment, look > 0.0 ? ahead : back, kOldMap);
+  return drift.covariance()(3, 3) / kVariance_m2;
+}
+
+TEST(Drift, ACorrelatedErrorAddsUpAlongTheWay) {
+  const std::vector<double> away(1000, 1.0);
+  EXPECT_NEAR(variance_after(away) / variance_of_sum(away), 1.0, 1e-9);
+  // A long way is a random walk of steps of so many keyframes' errors.
+  EXPECT_NEAR(
+      variance_after(away) / (kPart * kPart * 1000.0 *
+                              (1.0 + kCorrelated * kCorrelated * 2.0 * kCorrelationKeyframes)),
+      1.0, 0.06);
+}
+
+TEST(Drift, ACorrelatedErrorCancelsWhereTheSensorTurnsBack) {
+  std::vector<double> loop(20, 1.0);
+  loop.resize(40, -1.0);
+  EXPECT_NEAR(variance_after(loop) / variance_of_sum(loop), 1.0, 1e-9);
+  const std::vector<double> away(40, 1.0);
+  const double independent = 40.0 * kPart * kPart;
+  EXPECT_LT(variance_after(loop) - independent, 0.5 * (variance_after(away) - independent));
 }
 
 // A position under white noise q on acceleration is uncertain by q t^3 / 3.

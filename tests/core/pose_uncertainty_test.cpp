@@ -70,18 +70,18 @@ TEST(PoseUncertainty, IsInTheSensorsAxes) {
   EXPECT_NEAR(covariance(4, 4) / covariance(3, 3), 9.0, 1e-9);  // odometry's x is on its right
 }
 
-// Of a keyframe's standard error a thirteenth is handed on, and half as much again is steady.
+// Of a keyframe's standard error a thirteenth is handed on, and half as much again is correlated.
 TEST(PoseUncertainty, AKeyframeHandsOnItsError) {
   const MotionState aligned = state_of(Vector6d::Constant(1e-4));
   const double alignment = kUnit * kLeastDesignEffect * 1e-4;
   PoseUncertainty old_map(kDataWeight), young_map(kDataWeight);
   old_map.add_keyframe(aligned, kOldMap);
-  young_map.add_keyframe(aligned, 1);  // counts as the fourth
+  young_map.add_keyframe(aligned, 2);  // as much as the first one
   const auto part_of = [&](const PoseUncertainty& uncertainty) {
     return uncertainty.covariance(exact_state())(3, 3) / alignment;
   };
   EXPECT_NEAR(part_of(old_map), 1.25 / (13.0 * 13.0), 1e-9);
-  EXPECT_NEAR(part_of(young_map), 1.25 / (4.0 * 4.0), 1e-9);
+  EXPECT_NEAR(part_of(young_map), 1.25 / (2.0 * 2.0), 1e-9);
 }
 
 TEST(PoseUncertainty, AnotherMapBeginsAsUncertainAsThePoseWas) {
