@@ -82,8 +82,9 @@ void DaemonLink::take_hello(std::string_view datagram) {
   if (!message.is_object() || !message.contains("hello")) return;
   const json& hello = message["hello"];
   if (hello.contains("token") && hello["token"].is_string()) {
-    const bool is_new = token_ != hello["token"];
-    token_ = hello["token"];
+    const auto token = hello["token"].get<std::string>();
+    const bool is_new = token != token_;
+    token_ = token;
     if (is_new) renew();
     return;
   }
