@@ -18,7 +18,7 @@ void MotionCheck::clear() {
   scan_count_ = 0;
   times_refuted_ = 0;
   ambiguity_ = 0.0;
-  ambiguous_scans_ = 0;
+  ambiguous_scans_ = weak_scans_ = 0;
   ambiguity_ended_ = false;
 }
 
@@ -28,8 +28,10 @@ void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin,
   scans_.add(structure_, T_begin, T_end, timing);
   ++scan_count_;
   if (newest_is_spaced()) spaced_scans_.add(structure_, T_begin, T_end, timing);
-  ambiguity_ended_ = !is_ambiguous() && ambiguous_scans_ >= search::kAmbiguousScans;
+  ambiguity_ended_ = !is_ambiguous() && ambiguous_scans_ >= search::kAmbiguousScans &&
+                     2 * weak_scans_ < ambiguous_scans_;
   ambiguous_scans_ = is_ambiguous() ? ambiguous_scans_ + 1 : 0;
+  if (!is_ambiguous()) weak_scans_ = 0;
 }
 
 /// Under motions that are faster or slower along the axis, or across it.
@@ -67,7 +69,8 @@ bool MotionCheck::is_refuted(const Eigen::Vector2d& axis) {
   return times_refuted_ >= search::kRefutingScans;
 }
 
-void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis) {
+void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis, bool has_weak_direction) {
+  if (has_weak_direction && is_ambiguous()) ++weak_scans_;
   if (!newest_is_spaced() || !spaced_scans_.is_full()) return;
   ambiguity_ += search::kAmbiguitySmoothing * (depth_of_second_minimum(axis) - ambiguity_);
 }

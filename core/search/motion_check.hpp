@@ -35,12 +35,13 @@ class MotionCheck {
   /// and the last time. `axis`: horizontal unit vector along or across the surroundings.
   bool is_refuted(const Eigen::Vector2d& axis);
   /// To be called once after each is_refuted(). Looks for a second minimum over 15 scans
-  /// (kAmbiguityStride).
-  void observe_ambiguity(const Eigen::Vector2d& axis);
+  /// (kAmbiguityStride). `has_weak_direction`: of the newest scan, which is dead reckoned along it.
+  void observe_ambiguity(const Eigen::Vector2d& axis, bool has_weak_direction);
   /// Whether there has been one for some time.
   [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }
   /// Whether it just ended after kAmbiguousScans or more. How far the sensor came meanwhile is not
-  /// known, and the map is that of one of two motions.
+  /// known, and the map is that of one of two motions. Not if most of them had a weak direction, as
+  /// in a tunnel: its covariance has that doubt.
   [[nodiscard]] bool ambiguity_ended() const { return ambiguity_ended_; }
 
  private:
@@ -56,6 +57,7 @@ class MotionCheck {
   int times_refuted_ = 0;              // on end
   double ambiguity_ = 0.0;             // sigmas
   int ambiguous_scans_ = 0;            // in a row
+  int weak_scans_ = 0;                 // of these, with a weak direction
   bool ambiguity_ended_ = false;       // with the newest
   StructurePoints structure_;          // of the newest
   TopDownGrid grid_;

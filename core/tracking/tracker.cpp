@@ -71,7 +71,10 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
                                                : MapUse::end_only;
   if (use == MapUse::keyframe) calibrate();
   // The result counts from the next scan on: the pose of this one is out.
-  if (is_checked()) motion_check_.observe_ambiguity(least_known_axis(alignment_.solution));
+  if (is_checked()) {
+    motion_check_.observe_ambiguity(least_known_axis(alignment_.solution),
+                                    alignment_.weak.count > 0);
+  }
   local_.grow_map(scan_, features, alignment_.solution, use, calibration_.sensitivity());
   hook(Stage::update_map);
 }

@@ -162,7 +162,7 @@ int ambiguous_scans(Lanes lanes, double tracked_mps) {
     end.translation_m.x() = tracked_mps * end_s;
     check.add(lanes.scan(end_s), begin, end, timing(1e9 * end_s));
     check.is_refuted({1.0, 0.0});
-    check.observe_ambiguity({1.0, 0.0});
+    check.observe_ambiguity({1.0, 0.0}, false);
     if (check.is_ambiguous()) ++ambiguous;
   }
   return ambiguous;
@@ -189,7 +189,7 @@ TEST(MotionCheck, ScansWithoutStructureDoNotEndTheSearchForAmbiguity) {
     end.translation_m.x() = kSpeed_mps * kSpan_s * k;
     check.add(features, begin, end, timing(1e9 * kSpan_s * k));
     check.is_refuted({1.0, 0.0});
-    check.observe_ambiguity({1.0, 0.0});
+    check.observe_ambiguity({1.0, 0.0}, false);
   };
   for (int k = 1; k <= 40; ++k) take(k, {});
   EXPECT_FALSE(check.is_ambiguous());
@@ -200,6 +200,30 @@ TEST(MotionCheck, ScansWithoutStructureDoNotEndTheSearchForAmbiguity) {
     was_ambiguous |= check.is_ambiguous();
   }
   EXPECT_TRUE(was_ambiguous);
+}
+
+/// Whether it ends when the lanes beside the sensor turn off, and one of so many scans has a weak
+/// direction; 0: none.
+bool ambiguity_ends(int weak_stride) {
+  MotionCheck check(2000);
+  Lanes moving(120, 120, 1.0, 0.05), fixed(150, 0, 0.0, 0.05);
+  bool has_ended = false;
+  for (int k = 1; k <= 100; ++k) {
+    Pose begin, end;
+    begin.translation_m.x() = kSpeed_mps * kSpan_s * (k - 1);
+    end.translation_m.x() = kSpeed_mps * kSpan_s * k;
+    check.add((k <= 60 ? moving : fixed).scan(kSpan_s * k), begin, end, timing(1e9 * kSpan_s * k));
+    check.is_refuted({1.0, 0.0});
+    check.observe_ambiguity({1.0, 0.0}, weak_stride > 0 && k % weak_stride == 0);
+    has_ended |= check.ambiguity_ended();
+  }
+  return has_ended;
+}
+
+TEST(MotionCheck, WhatWasAmbiguousInATunnelEndsNoSession) {
+  EXPECT_TRUE(ambiguity_ends(0));
+  EXPECT_TRUE(ambiguity_ends(3)) << "weak at times, as between trucks";
+  EXPECT_FALSE(ambiguity_ends(1));
 }
 
 TEST(MotionCheck, AFewCarsDoNotMakeItAmbiguous) {
