@@ -40,6 +40,7 @@ class File {
 
 Buffer udp_datagram(const Buffer& payload, std::uint16_t port) {
   Buffer out;
+  out.reserve(payload.size() + 8);
   be16(out, 2368);
   be16(out, port);
   be16(out, payload.size() + 8);
@@ -50,6 +51,7 @@ Buffer udp_datagram(const Buffer& payload, std::uint16_t port) {
 
 Buffer ipv4(const Buffer& datagram, int option_bytes, std::uint16_t fragment, int protocol) {
   Buffer out;
+  out.reserve(datagram.size() + 60);
   const auto options = static_cast<std::size_t>(option_bytes);
   out.push_back(static_cast<std::byte>(0x40U + (20 + options) / 4));
   out.push_back(std::byte{0});
@@ -86,6 +88,7 @@ Buffer cooked(const Buffer& ip) {
 
 Buffer cooked2(const Buffer& ip) {
   Buffer out;
+  out.reserve(ip.size() + 20);
   be16(out, 0x0800);
   out.insert(out.end(), 18, std::byte{0});
   append(out, ip);
