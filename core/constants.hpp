@@ -311,7 +311,7 @@ inline constexpr double kLeastDesignEffect = 0.05;
 inline constexpr double kScansSharingErrors = 3.0;
 /// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
 inline constexpr double kMostlyTurns_m = 0.3;
-/// Keyframes that a scan sees of the map at most.
+/// Keyframes that a scan sees of the map at most; their errors are correlated over as many.
 inline constexpr int kKeyframesInView = 13;
 /// Correlated error of a keyframe's alignment, in parts of its standard error.
 inline constexpr double kCorrelatedError = 0.5;

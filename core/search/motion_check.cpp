@@ -30,8 +30,11 @@ void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin,
   if (newest_is_spaced()) spaced_scans_.add(structure_, T_begin, T_end, timing);
   ambiguity_ended_ = !is_ambiguous() && ambiguous_scans_ >= search::kAmbiguousScans &&
                      2 * weak_scans_ < ambiguous_scans_;
-  ambiguous_scans_ = is_ambiguous() ? ambiguous_scans_ + 1 : 0;
-  if (!is_ambiguous()) weak_scans_ = 0;
+  if (is_ambiguous()) {
+    ++ambiguous_scans_;
+  } else {
+    ambiguous_scans_ = weak_scans_ = 0;
+  }
 }
 
 /// Under motions that are faster or slower along the axis, or across it.

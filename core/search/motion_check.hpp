@@ -40,8 +40,8 @@ class MotionCheck {
   /// Whether there has been one for some time.
   [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }
   /// Whether it just ended after kAmbiguousScans or more. How far the sensor came meanwhile is not
-  /// known, and the map is that of one of two motions. Not if most of them had a weak direction, as
-  /// in a tunnel: its covariance has that doubt.
+  /// known, and the map is that of one of two motions. False if most of these scans had a weak
+  /// direction, as in a tunnel: the covariance grew along it.
   [[nodiscard]] bool ambiguity_ended() const { return ambiguity_ended_; }
 
  private:

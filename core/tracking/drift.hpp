@@ -11,9 +11,9 @@ namespace lilo::core {
 /// - Every keyframe enters the map with the error of its own alignment and hands it on to the scans
 ///   that are aligned with it.
 /// - A part of that error is correlated from keyframe to keyframe, since the same beams meet the
-///   same surfaces: by 1/e where as many keyframes lie between as a scan sees of the map. In the
-///   sensor's axes it is a first-order Gauss-Markov process (Gelb, Applied Optimal Estimation,
-///   1974, chapter 3) that augments the pose.
+///   same surfaces. The correlation falls to 1/e over as many keyframes as a scan sees of the map.
+///   In the sensor's axes it is a first-order Gauss-Markov process (Gelb, Applied Optimal
+///   Estimation, 1974, chapter 3) that augments the pose.
 /// - An error of attitude turns into an error of position as the sensor moves on.
 /// - Along a weak direction the motion is dead reckoned.
 ///
@@ -44,7 +44,7 @@ class Drift {
   [[nodiscard]] Matrix6d covariance() const;
 
  private:
-  Matrix6d pose_ = Matrix6d::Zero();   // but for the scale of the path
+  Matrix6d pose_ = Matrix6d::Zero();   // covariance, without the scale of the path
   Matrix6d cross_ = Matrix6d::Zero();  // covariance of the pose with the correlated error
   Eigen::Vector3d travelled_m_ = Eigen::Vector3d::Zero();  // since the map was begun
   Matrix6d at_start_ = Matrix6d::Zero();

@@ -145,7 +145,8 @@ double variance_after(const std::vector<double>& looks) {
 TEST(Drift, ACorrelatedErrorAddsUpAlongTheWay) {
   const std::vector<double> away(1000, 1.0);
   EXPECT_NEAR(variance_after(away) / variance_of_sum(away), 1.0, 1e-9);
-  // A long way is a random walk of steps of so many keyframes' errors.
+  // Over a long way, the variance of a correlated error counts twice for each of the keyframes over
+  // which it is correlated.
   EXPECT_NEAR(
       variance_after(away) / (kPart * kPart * 1000.0 *
                               (1.0 + kCorrelated * kCorrelated * 2.0 * kCorrelationKeyframes)),
