@@ -10,6 +10,7 @@
 #include <cstring>
 #include <ifaddrs.h>
 #include <poll.h>
+#include <stdexcept>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <system_error>
@@ -73,7 +74,23 @@ void UdpSocket::send_to(std::uint16_t port, const std::string& datagram) const {
   require(sent == static_cast<ssize_t>(datagram.size()), "sendto");
 }
 
-std::uint16_t free_udp_port() { return UdpSocket().port(); }
+std::uint16_t free_udp_port() {
+  // The system gives ports of 32768 and more to sockets that ask for any. Programs that run at the
+  // same time begin at other ports.
+  constexpr int kFirst = 10000, kCount = 20000, kOfOneProgram = 50;
+  static std::atomic<int> next{0};
+  for (int tried = 0; tried < kCount; ++tried) {
+    const int port = kFirst + (getpid() * kOfOneProgram + next++) % kCount;
+    const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    require(fd >= 0, "socket");
+    const sockaddr_in address = loopback(static_cast<std::uint16_t>(port));
+    const bool is_free =
+        bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+    close(fd);
+    if (is_free) return static_cast<std::uint16_t>(port);
+  }
+  throw std::runtime_error("no UDP port is free");
+}
 
 std::optional<std::string> outer_address() {
   ifaddrs* all = nullptr;

@@ -29,7 +29,7 @@ class UdpSocket {
   std::uint16_t port_ = 0, sender_ = 0;
 };
 
-/// A port that was free a moment ago.
+/// A port that was free a moment ago, and that no socket which asks for any port gets.
 std::uint16_t free_udp_port();
 
 /// An address of this computer that is not loopback, or nothing.
