@@ -22,6 +22,12 @@ double kept_information(double sigma_rad) {
   return std::max(0.0, 1.0 / (believed_rad * believed_rad) - calibration::kPriorInformation);
 }
 
+/// Smaller ones are those of exact encoders, and larger ones no encoder's.
+bool is_applied(double eccentricity_rad) {
+  return eccentricity_rad >= calibration::kSmallest_rad &&
+         eccentricity_rad < calibration::kLargest_rad;
+}
+
 }  // namespace
 
 void BeamCalibration::resume(const BeamEstimate& kept) {
@@ -30,7 +36,7 @@ void BeamCalibration::resume(const BeamEstimate& kept) {
   correction_.elevation_rad = kept.elevation_rad;
   std::transform(kept.elevation_sigma_rad.begin(), kept.elevation_sigma_rad.end(),
                  elevation_information_.begin(), kept_information);
-  if (largest_azimuth_rad(kept) >= calibration::kLargest_rad) return;
+  if (!is_applied(largest_azimuth_rad(kept))) return;
   correction_.eccentricity_rad = {kept.eccentricity_rad[0], kept.eccentricity_rad[1]};
   const double information = kept_information(kept.eccentricity_sigma_rad);
   eccentricity_information_ = information * Eigen::Matrix2d::Identity();
@@ -123,8 +129,8 @@ void BeamCalibration::observe_eccentricity(const BeamEquations& scan) {
   const Eigen::Matrix2d all =
       eccentricity_information_ + calibration::kPriorInformation * Eigen::Matrix2d::Identity();
   const Eigen::Vector2d found_rad = all.ldlt().solve(eccentricity_sum_);
-  const bool is_plausible = found_rad.norm() < calibration::kLargest_rad;
-  correction_.eccentricity_rad = is_plausible ? found_rad : Eigen::Vector2d::Zero();
+  const bool applies = is_applied(found_rad.norm());
+  correction_.eccentricity_rad = applies ? found_rad : Eigen::Vector2d::Zero();
 }
 
 }  // namespace lilo::core
