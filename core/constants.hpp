@@ -174,6 +174,11 @@ inline constexpr double kOverRelaxation = 1.2;
 /// Instants of a scan; each residual counts at the nearest one.
 inline constexpr int kResidualInstants = 32;
 
+/// m/s: a sensor that is slower may be among vehicles in a jam. There structure that is at least so
+/// many metres above the sensor, which is no vehicle, weighs so many times as much as lower one.
+inline constexpr double kFasterThanJams_mps = 5.0;
+inline constexpr float kTall_m = 2.3F, kTallWeight = 7.0F;
+
 /// Part of the information from the scan below which a direction is weak.
 inline constexpr double kWeakShare = 0.5;
 

@@ -81,6 +81,23 @@ void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t 
   }
 }
 
+/// What vehicles in a jam show may be most of a scan, and moves. What stands higher than any of
+/// them does not. All structure together keeps its weight, so that the covariance does. The weights
+/// stay the same over all steps: with weights that follow the matches the solver circles.
+Solver::HeightWeights Solver::height_weights(const std::vector<Feature>& features,
+                                             const Prior& prior) {
+  if (prior.twist.linear_mps.norm() > registration::kFasterThanJams_mps) return {};
+  float all = 0.0F, weighted = 0.0F;
+  for (const Feature& f : features) {
+    if (f.kind == FeatureKind::ground) continue;
+    all += 1.0F;
+    weighted += f.z_m > registration::kTall_m ? registration::kTallWeight : 1.0F;
+  }
+  if (!(all > 0.0F)) return {};
+  const float low = all / weighted;
+  return {.low = low, .tall = registration::kTallWeight * low};
+}
+
 void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                         std::size_t finest, Solution& solution) {
   sample(solution.trajectory, sampled_);
@@ -97,7 +114,11 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
     for (const Correspondence& one : some) {
       if (one.match.information == nullptr) continue;
       ++solution.matched;
-      add_residual(one, kernel_scale, data_weight, sums);
+      const Feature& f = *one.feature;
+      const float by_height = f.kind == FeatureKind::ground   ? 1.0F
+                              : f.z_m > registration::kTall_m ? height_weights_.tall
+                                                              : height_weights_.low;
+      add_residual(one, kernel_scale, data_weight * by_height, sums);
     }
   }
   solution.inliers = sums.weights;
@@ -194,6 +215,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   Solution solution = unaligned(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
+  height_weights_ = height_weights(features, prior);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, stride == 1 ? finest : LocalMaps::kWhole, solution);
     Equations data = data_equations(prior, solution.data_information);

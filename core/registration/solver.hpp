@@ -79,6 +79,10 @@ class Solver {
     std::size_t level = 0;  // of the cell
     Match match;
   };
+  /// Weights of structure by its height above the sensor.
+  struct HeightWeights {
+    float low = 1.0F, tall = 1.0F;
+  };
   struct Sums {
     double weights = 0.0, squares = 0.0, structure = 0.0;
   };
@@ -87,6 +91,7 @@ class Solver {
     NormalMatrix H;
     Unknowns b;
   };
+  static HeightWeights height_weights(const std::vector<Feature>& features, const Prior& prior);
   void accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                   std::size_t finest, Solution& solution);
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);
@@ -97,6 +102,7 @@ class Solver {
   Equations data_equations(const Prior& prior, Matrix6d& data_information) const;
 
   SolverConfig config_;
+  HeightWeights height_weights_;  // of the scan being solved
   Sampled sampled_;
   std::array<ResidualSums, registration::kResidualInstants + 1> bins_;
   std::array<Correspondence, kAtATime> correspondences_;

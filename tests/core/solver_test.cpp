@@ -11,18 +11,22 @@ namespace {
 
 constexpr double kSpan_s = 0.1;
 
-/// A room of 12 m by 9 m, 4 m high, the sensor in it.
+/// A room of 12 m by 9 m, 4 m high, the sensor in it. No wall lies on the border of cells: its
+/// points would fall into those on one side only.
 std::vector<Eigen::Vector3d> room(unsigned seed, int count) {
+  constexpr double kBack_m = -5.9, kFront_m = 6.1, kRight_m = -4.1, kLeft_m = 4.9, kFloor_m = -1.4,
+                   kCeiling_m = 2.6;
   std::mt19937 rng(seed);
-  std::uniform_real_distribution<double> x(-6.0, 6.0), y(-4.0, 5.0), z(-1.5, 2.5);
+  std::uniform_real_distribution<double> x(kBack_m, kFront_m), y(kRight_m, kLeft_m),
+      z(kFloor_m, kCeiling_m);
   std::vector<Eigen::Vector3d> points;
   for (int k = 0; k < count; ++k) {
-    const std::array<Eigen::Vector3d, 6> faces{Eigen::Vector3d{6.0, y(rng), z(rng)},
-                                               {-6.0, y(rng), z(rng)},
-                                               {x(rng), 5.0, z(rng)},
-                                               {x(rng), -4.0, z(rng)},
-                                               {x(rng), y(rng), -1.5},
-                                               {x(rng), y(rng), 2.5}};
+    const std::array<Eigen::Vector3d, 6> faces{Eigen::Vector3d{kFront_m, y(rng), z(rng)},
+                                               {kBack_m, y(rng), z(rng)},
+                                               {x(rng), kLeft_m, z(rng)},
+                                               {x(rng), kRight_m, z(rng)},
+                                               {x(rng), y(rng), kFloor_m},
+                                               {x(rng), y(rng), kCeiling_m}};
     points.push_back(faces[static_cast<std::size_t>(k) % faces.size()]);
   }
   return points;
@@ -80,6 +84,66 @@ TEST(Solver, FindsTheMotionWithinAScan) {
   EXPECT_LT(error.translation_m.norm(), 0.01);
   EXPECT_LT(so3_log(error.rotation).norm(), 0.005);
   EXPECT_LT((found.trajectory.end_twist().linear_mps - twist.linear_mps).norm(), 0.3);
+}
+
+/// Two walls ahead that disagree: what is low says that the sensor came `low_m` forward, what is
+/// tall that it did not move.
+std::vector<Feature> walls_that_disagree(double low_m, int low, int tall) {
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<float> side(-4.0F, 4.0F), height(0.0F, 2.0F);
+  std::vector<Feature> features;
+  for (int k = 0; k < low + tall; ++k) {
+    const bool is_tall = k >= low;
+    const float x_m = is_tall ? 10.0F : 10.0F - static_cast<float>(low_m);
+    const float z_m = height(rng) + (is_tall ? 3.0F : 0.0F);
+    features.push_back({x_m, side(rng), z_m, 0.5F, 0.0F, 0.0F, 0.0F, FeatureKind::structure, 0});
+  }
+  return features;
+}
+
+LocalMaps wall_map() {
+  std::mt19937 rng(4);
+  std::uniform_real_distribution<double> side(-6.0, 6.0), height(-1.0, 6.0), rough(-0.1, 0.1);
+  std::vector<Eigen::Vector3d> points;
+  for (int k = 0; k < 60000; ++k) points.emplace_back(10.0 + rough(rng), side(rng), height(rng));
+  return map_of(points, {});
+}
+
+/// Along a wall ahead at `speed_mps`; only the way to it is not known.
+Prior along_a_wall(double speed_mps) {
+  Prior prior = loose_prior({});
+  prior.twist.linear_mps.y() = speed_mps;
+  prior.acceleration_density.head<3>().setConstant(1e-8);
+  prior.begin_information.topLeftCorner<3, 3>() = 1e12 * Eigen::Matrix3d::Identity();
+  prior.begin_information.block<3, 3>(6, 6) = 1e12 * Eigen::Matrix3d::Identity();
+  return prior;
+}
+
+// A mean with the weights: 600 low and 200 tall features, of 3 cm and 0. Both are inliers alike.
+TEST(Solver, BelievesWhatIsTallMoreWhereTheSensorIsSlow) {
+  constexpr double kLow_m = 0.03, kLow = 600.0, kTall = 200.0, kWeight = 7.0;
+  const std::vector<Feature> scan = walls_that_disagree(kLow_m, 600, 200);
+  LocalMaps maps = wall_map();
+  Solver solver({.max_iterations = 20, .structure_kernel = 100.0F}, scan.size());
+  for (const double speed_mps : {0.0, 4.0, 6.0}) {
+    const Solution found = solver.solve(scan, maps, along_a_wall(speed_mps));
+    const double weight = speed_mps < 5.0 ? kWeight : 1.0;
+    const double mean_m = kLow_m * kLow / (kLow + weight * kTall);
+    EXPECT_NEAR(found.trajectory.at(0.5).translation_m.x(), mean_m, 0.002) << speed_mps;
+  }
+}
+
+// The covariance is to be that of the same number of features.
+TEST(Solver, KeepsTheInformationOfAllStructureWhereItsHeightsAreWeighted) {
+  const std::vector<Feature> scan = walls_that_disagree(0.0, 600, 200);
+  LocalMaps maps = wall_map();
+  Solver solver({.max_iterations = 20, .structure_kernel = 100.0F}, scan.size());
+  std::vector<double> information;
+  for (const double speed_mps : {0.0, 6.0}) {
+    const Solution found = solver.solve(scan, maps, along_a_wall(speed_mps));
+    information.push_back(found.data_information(3, 3));
+  }
+  EXPECT_NEAR(information[0] / information[1], 1.0, 0.05);
 }
 
 // The map's cells lie otherwise in the room then, and all axes are others.
