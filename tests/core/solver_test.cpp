@@ -105,6 +105,7 @@ LocalMaps wall_map() {
   std::mt19937 rng(4);
   std::uniform_real_distribution<double> side(-6.0, 6.0), height(-1.0, 6.0), rough(-0.1, 0.1);
   std::vector<Eigen::Vector3d> points;
+  points.reserve(60000);
   for (int k = 0; k < 60000; ++k) points.emplace_back(10.0 + rough(rng), side(rng), height(rng));
   return map_of(points, {});
 }
