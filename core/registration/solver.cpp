@@ -82,24 +82,23 @@ void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t 
 }
 
 /// What vehicles in a jam show may be most of a scan, and moves. What stands higher than any of
-/// them does not. All structure together keeps its weight, so that the covariance does. The weights
-/// stay the same over all steps: with weights that follow the matches the solver circles.
-Solver::HeightWeights Solver::height_weights(const std::vector<Feature>& features,
-                                             const Prior& prior) {
+/// them does not. All structure together keeps its information, so that the covariance does. The
+/// weights stay the same over all steps: with weights that follow the matches the solver circles.
+Solver::HeightWeights Solver::height_weights(const std::vector<Feature>& features, LocalMaps& maps,
+                                             const Prior& prior, Solution& solution) {
   if (prior.twist.linear_mps.norm() > registration::kFasterThanJams_mps) return {};
-  float all = 0.0F, weighted = 0.0F;
-  for (const Feature& f : features) {
-    if (f.kind == FeatureKind::ground) continue;
-    all += 1.0F;
-    weighted += f.z_m > registration::kTall_m ? registration::kTallWeight : 1.0F;
-  }
-  if (!(all > 0.0F)) return {};
-  const float low = all / weighted;
+  height_weights_ = {};
+  const Sums sums =
+      accumulate(features, registration::kFarStride, maps, LocalMaps::kWhole, solution);
+  const double all = sums.low + sums.tall;
+  if (!(all > 0.0)) return {};
+  const auto low = static_cast<float>(
+      all / (sums.low + static_cast<double>(registration::kTallWeight) * sums.tall));
   return {.low = low, .tall = registration::kTallWeight * low};
 }
 
-void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
-                        std::size_t finest, Solution& solution) {
+Solver::Sums Solver::accumulate(const std::vector<Feature>& features, std::size_t stride,
+                                LocalMaps& maps, std::size_t finest, Solution& solution) {
   sample(solution.trajectory, sampled_);
   for (ResidualSums& bin : bins_) bin.setZero();
   Sums sums;
@@ -124,6 +123,7 @@ void Solver::accumulate(const std::vector<Feature>& features, std::size_t stride
   solution.inliers = sums.weights;
   solution.structure_inliers = sums.structure;
   solution.mean_square = sums.weights > 0.0 ? sums.squares / sums.weights : 0.0;
+  return sums;
 }
 
 void Solver::add_residual(const Correspondence& one, float kernel_scale, float data_weight,
@@ -137,7 +137,11 @@ void Solver::add_residual(const Correspondence& one, float kernel_scale, float d
   const float kernel = kernel_scale * (ground ? config_.ground_kernel : config_.structure_kernel);
   const float robust = 1.0F / (1.0F + square / (kernel * kernel));
   sums.weights += static_cast<double>(robust);
-  if (!ground) sums.structure += static_cast<double>(robust);
+  if (!ground) {
+    sums.structure += static_cast<double>(robust);
+    double& information = one.feature->z_m > registration::kTall_m ? sums.tall : sums.low;
+    information += static_cast<double>(robust * O.trace());
+  }
   sums.squares += static_cast<double>(robust * square);
   // J = [-[p]x  I] with p as turned: [p]x crosses columns from the left, its transpose rows from
   // the right.
@@ -215,7 +219,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   Solution solution = unaligned(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
-  height_weights_ = height_weights(features, prior);
+  height_weights_ = height_weights(features, maps, prior, solution);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, stride == 1 ? finest : LocalMaps::kWhole, solution);
     Equations data = data_equations(prior, solution.data_information);

@@ -85,14 +85,16 @@ class Solver {
   };
   struct Sums {
     double weights = 0.0, squares = 0.0, structure = 0.0;
+    double low = 0.0, tall = 0.0;  // information of structure
   };
   /// H step = b of the deviation from the predicted motion, over all knots.
   struct Equations {
     NormalMatrix H;
     Unknowns b;
   };
-  static HeightWeights height_weights(const std::vector<Feature>& features, const Prior& prior);
-  void accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
+  HeightWeights height_weights(const std::vector<Feature>& features, LocalMaps& maps,
+                               const Prior& prior, Solution& solution);
+  Sums accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                   std::size_t finest, Solution& solution);
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);
   static void match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest);
