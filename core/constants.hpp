@@ -176,7 +176,7 @@ inline constexpr int kResidualInstants = 32;
 
 /// m/s: a sensor that is slower may be among vehicles in a jam. There structure that is at least so
 /// many metres above the sensor, which is no vehicle, weighs so many times as much as lower one.
-inline constexpr double kFasterThanJams_mps = 5.0;
+inline constexpr double kMaxJamSpeed_mps = 5.0;
 inline constexpr float kTall_m = 2.3F, kTallWeight = 7.0F;
 
 /// Part of the information from the scan below which a direction is weak.

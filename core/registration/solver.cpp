@@ -34,6 +34,9 @@ std::pair<Matrix6d, Vector6d> normal_equations(const ResidualSums& sums) {
   return {H, sums.tail<6>()};
 }
 
+/// Whether it is higher above the sensor than any vehicle.
+bool is_tall(const Feature& f) { return f.z_m > registration::kTall_m; }
+
 KnotWeights weights_of_bin(int bin, const Prior& prior) {
   const double s = static_cast<double>(bin) / registration::kResidualInstants;
   return weights_at(s, prior.segments, prior.span_s);
@@ -84,17 +87,22 @@ void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t 
 /// What vehicles in a jam show may be most of a scan, and moves. What stands higher than any of
 /// them does not. All structure together keeps its information, so that the covariance does. The
 /// weights stay the same over all steps: with weights that follow the matches the solver circles.
-Solver::HeightWeights Solver::height_weights(const std::vector<Feature>& features, LocalMaps& maps,
-                                             const Prior& prior, Solution& solution) {
-  if (prior.twist.linear_mps.norm() > registration::kFasterThanJams_mps) return {};
+void Solver::weigh_by_height(const std::vector<Feature>& features, LocalMaps& maps,
+                             const Prior& prior, Solution& solution) {
   height_weights_ = {};
+  if (prior.twist.linear_mps.norm() > registration::kMaxJamSpeed_mps) return;
   const Sums sums =
       accumulate(features, registration::kFarStride, maps, LocalMaps::kWhole, solution);
   const double all = sums.low + sums.tall;
-  if (!(all > 0.0)) return {};
+  if (!(all > 0.0)) return;
   const auto low = static_cast<float>(
       all / (sums.low + static_cast<double>(registration::kTallWeight) * sums.tall));
-  return {.low = low, .tall = registration::kTallWeight * low};
+  height_weights_ = {.low = low, .tall = registration::kTallWeight * low};
+}
+
+float Solver::weight_by_height(const Feature& f) const {
+  if (f.kind == FeatureKind::ground) return 1.0F;
+  return is_tall(f) ? height_weights_.tall : height_weights_.low;
 }
 
 Solver::Sums Solver::accumulate(const std::vector<Feature>& features, std::size_t stride,
@@ -113,11 +121,7 @@ Solver::Sums Solver::accumulate(const std::vector<Feature>& features, std::size_
     for (const Correspondence& one : some) {
       if (one.match.information == nullptr) continue;
       ++solution.matched;
-      const Feature& f = *one.feature;
-      const float by_height = f.kind == FeatureKind::ground   ? 1.0F
-                              : f.z_m > registration::kTall_m ? height_weights_.tall
-                                                              : height_weights_.low;
-      add_residual(one, kernel_scale, data_weight * by_height, sums);
+      add_residual(one, kernel_scale, data_weight * weight_by_height(*one.feature), sums);
     }
   }
   solution.inliers = sums.weights;
@@ -139,7 +143,7 @@ void Solver::add_residual(const Correspondence& one, float kernel_scale, float d
   sums.weights += static_cast<double>(robust);
   if (!ground) {
     sums.structure += static_cast<double>(robust);
-    double& information = one.feature->z_m > registration::kTall_m ? sums.tall : sums.low;
+    double& information = is_tall(*one.feature) ? sums.tall : sums.low;
     information += static_cast<double>(robust * O.trace());
   }
   sums.squares += static_cast<double>(robust * square);
@@ -219,7 +223,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   Solution solution = unaligned(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
-  height_weights_ = height_weights(features, maps, prior, solution);
+  weigh_by_height(features, maps, prior, solution);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, stride == 1 ? finest : LocalMaps::kWhole, solution);
     Equations data = data_equations(prior, solution.data_information);

@@ -92,8 +92,9 @@ class Solver {
     NormalMatrix H;
     Unknowns b;
   };
-  HeightWeights height_weights(const std::vector<Feature>& features, LocalMaps& maps,
-                               const Prior& prior, Solution& solution);
+  void weigh_by_height(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
+                       Solution& solution);
+  [[nodiscard]] float weight_by_height(const Feature& f) const;
   Sums accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                   std::size_t finest, Solution& solution);
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);

@@ -147,6 +147,18 @@ TEST(Solver, KeepsTheInformationOfAllStructureWhereItsHeightsAreWeighted) {
   EXPECT_NEAR(information[0] / information[1], 1.0, 0.05);
 }
 
+// As foliage: it is tall and says nothing.
+TEST(Solver, GivesNoWeightToWhatIsTallAndHasNoInformation) {
+  std::vector<Feature> scan = walls_that_disagree(0.0, 600, 600);
+  for (std::size_t k = 600; k < scan.size(); ++k) scan[k].y_m += 100.0F;  // where the map is empty
+  LocalMaps maps = wall_map();
+  Solver solver({.max_iterations = 20, .structure_kernel = 100.0F}, scan.size());
+  const auto information_at = [&](double speed_mps) {
+    return solver.solve(scan, maps, along_a_wall(speed_mps)).data_information(3, 3);
+  };
+  EXPECT_NEAR(information_at(0.0) / information_at(6.0), 1.0, 0.05);
+}
+
 // The map's cells lie otherwise in the room then, and all axes are others.
 TEST(Solver, DoesNotCareHowTheOdometryFrameIsTurned) {
   const Twist twist{{1.0, -0.5, 0.2}, {0.05, 0.0, 0.4}};
