@@ -86,6 +86,9 @@ TEST(Solver, FindsTheMotionWithinAScan) {
   EXPECT_LT((found.trajectory.end_twist().linear_mps - twist.linear_mps).norm(), 0.3);
 }
 
+/// The distance of a wall ahead that lies on no border of cells, as those of the room.
+constexpr double kWall_m = 10.1;
+
 /// Two walls ahead that disagree: what is low says that the sensor came `low_m` forward, what is
 /// tall that it did not move.
 std::vector<Feature> walls_that_disagree(double low_m, int low, int tall) {
@@ -94,7 +97,7 @@ std::vector<Feature> walls_that_disagree(double low_m, int low, int tall) {
   std::vector<Feature> features;
   for (int k = 0; k < low + tall; ++k) {
     const bool is_tall = k >= low;
-    const float x_m = is_tall ? 10.0F : 10.0F - static_cast<float>(low_m);
+    const auto x_m = static_cast<float>(is_tall ? kWall_m : kWall_m - low_m);
     const float z_m = height(rng) + (is_tall ? 3.0F : 0.0F);
     features.push_back({x_m, side(rng), z_m, 0.5F, 0.0F, 0.0F, 0.0F, FeatureKind::structure, 0});
   }
@@ -106,17 +109,26 @@ LocalMaps wall_map() {
   std::uniform_real_distribution<double> side(-6.0, 6.0), height(-1.0, 6.0), rough(-0.1, 0.1);
   std::vector<Eigen::Vector3d> points;
   points.reserve(60000);
-  for (int k = 0; k < 60000; ++k) points.emplace_back(10.0 + rough(rng), side(rng), height(rng));
+  for (int k = 0; k < 60000; ++k) {
+    Eigen::Vector3d& p = points.emplace_back();
+    p.x() = kWall_m + rough(rng);
+    p.y() = side(rng);
+    p.z() = height(rng);
+  }
   return map_of(points, {});
 }
 
-/// Along a wall ahead at `speed_mps`; only the way to it is not known.
+/// Along a wall ahead at `speed_mps`; only the way to it is not known. A wall does not hold the
+/// sensor along itself: features would slide into other cells.
 Prior along_a_wall(double speed_mps) {
   Prior prior = loose_prior({});
   prior.twist.linear_mps.y() = speed_mps;
-  prior.acceleration_density.head<3>().setConstant(1e-8);
-  prior.begin_information.topLeftCorner<3, 3>() = 1e12 * Eigen::Matrix3d::Identity();
-  prior.begin_information.block<3, 3>(6, 6) = 1e12 * Eigen::Matrix3d::Identity();
+  constexpr int kForward = 3, kForwardSpeed = 9;
+  for (int k = 0; k < kKnotSize; ++k) {
+    if (k == kForward || k == kForwardSpeed) continue;
+    prior.begin_information(k, k) = 1e12;
+    if (k < 6) prior.acceleration_density[k] = 1e-8;
+  }
   return prior;
 }
 
