@@ -153,8 +153,6 @@ inline constexpr double kStationary_mps = 0.1, kStationary_radps = 0.1;
 inline constexpr int kStationaryScans = 5;
 /// Metres from where it was stationary: it has set off.
 inline constexpr double kSetOff_m = 0.1;
-/// 1 sigma of the place (m) and of the velocity (m/s) of a stationary sensor.
-inline constexpr double kStationaryPlace_m = 0.005, kStationaryVelocity_mps = 0.3;
 
 }  // namespace lilo::core::motion
 
@@ -181,11 +179,6 @@ inline constexpr float kTall_m = 2.3F, kTallWeight = 7.0F;
 
 /// Part of the information from the scan below which a direction is weak.
 inline constexpr double kWeakShare = 0.5;
-
-/// Of two alignments one fits as well with more than this part of the other's structure inliers.
-inline constexpr double kFitsAsWell = 0.95;
-/// The scan tells two places apart with more than so many times the information of its duration.
-inline constexpr double kTellsApart = 20.0;
 
 /// Weight of the newest scan in the usual fit.
 inline constexpr double kFitSmoothing = 0.3;

@@ -27,21 +27,4 @@ void StationaryDetector::observe(const Pose& T_odom_sensor, const Twist& twist) 
   if (slow_scans_ >= motion::kStationaryScans) assume(T_odom_sensor);
 }
 
-Prior StationaryDetector::hypothesis(Prior prior) const {
-  constexpr int kTranslation = 3, kVelocity = 9;  // of a knot: rotation, translation, rates of both
-  prior.T_begin.translation_m = T_odom_sensor_.translation_m;
-  prior.twist.linear_mps.setZero();
-  prior.begin_mean.setZero();
-  const auto believe = [&](int first, double sigma) {
-    for (int k = first; k < first + 3; ++k) {
-      prior.begin_information.row(k).setZero();
-      prior.begin_information.col(k).setZero();
-      prior.begin_information(k, k) = 1.0 / (sigma * sigma);
-    }
-  };
-  believe(kTranslation, motion::kStationaryPlace_m);
-  believe(kVelocity, motion::kStationaryVelocity_mps);
-  return prior;
-}
-
 }  // namespace lilo::core

@@ -2,7 +2,6 @@
 #include "core/tracking/local_odometry.hpp"
 
 #include "core/constants.hpp"
-#include "core/registration/comparison.hpp"
 #include "core/search/hypothesis.hpp"
 
 #include <Eigen/LU>
@@ -33,8 +32,8 @@ LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_featu
       uncertainty_(config.data_weight),
       least_segments_(config.segments) {}
 
-Solution LocalOdometry::align_moving(const std::vector<Feature>& features, const Prior& prior,
-                                     std::size_t finest_level) {
+Solution LocalOdometry::align_checked(const std::vector<Feature>& features, const Prior& prior,
+                                      std::size_t finest_level) {
   const double exceptional = tracking::kExceptionalSigmas * tracking::kExceptionalSigmas;
   Solution found = align(features, prior, finest_level);
   if (normalised_innovation(prior, found.trajectory.knots).maxCoeff() < exceptional) return found;
@@ -42,14 +41,6 @@ Solution LocalOdometry::align_moving(const std::vector<Feature>& features, const
   usual_prior.has_heavy_tails = false;
   Solution usual = align(features, usual_prior, finest_level);
   return is_significant(found.inliers, usual.inliers, search::kDropSigmas) ? found : usual;
-}
-
-Solution LocalOdometry::align_moving_or_stationary(const std::vector<Feature>& features,
-                                                   const Prior& prior, std::size_t finest_level) {
-  Solution moving = align_moving(features, prior, finest_level);
-  if (!stationary_.is_stationary()) return moving;
-  Solution stationary = align(features, stationary_.hypothesis(prior), finest_level);
-  return fits_as_well(stationary, moving) && tells_apart(stationary, moving) ? stationary : moving;
 }
 
 void LocalOdometry::accept(const ScanTiming& scan, const Solution& solution) {

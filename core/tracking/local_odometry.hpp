@@ -38,10 +38,11 @@ class LocalOdometry {
                  std::size_t finest_level = LocalMaps::kWhole) {
     return solver_.solve(features, map_.cells(), prior, finest_level);
   }
-  /// The same. Where the sensor is stationary, the scan is also aligned from that place, and the
-  /// better alignment is taken.
-  Solution align_moving_or_stationary(const std::vector<Feature>& features, const Prior& prior,
-                                      std::size_t finest_level);
+  /// The same, but takes an exceptional motion only if it fits significantly better than a usual
+  /// one. Where little of a scan matches, the heavy tails of the prior let it jump to a place that
+  /// looks alike.
+  Solution align_checked(const std::vector<Feature>& features, const Prior& prior,
+                         std::size_t finest_level);
   /// The prediction as a solution in which nothing matched.
   [[nodiscard]] Solution unaligned(const Prior& prior) const { return solver_.unaligned(prior); }
 
@@ -86,11 +87,6 @@ class LocalOdometry {
   }
 
  private:
-  /// Takes an exceptional motion only if it fits significantly better than a usual one. Where
-  /// little of a scan matches, the heavy tails of the prior let it jump to a place that looks
-  /// alike.
-  Solution align_moving(const std::vector<Feature>& features, const Prior& prior,
-                        std::size_t finest_level);
   void move_to(const MotionState& state);
 
   Solver solver_;

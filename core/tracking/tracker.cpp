@@ -126,8 +126,7 @@ std::optional<Solution> Tracker::solve(const Prior& prior) {
   if (phase_ == Phase::lost && scan_.says_enough()) {
     return relocalize(local_.align(*scan_.features, prior, scan_.finest_level), prior);
   }
-  const Solution found =
-      local_.align_moving_or_stationary(*scan_.features, prior, scan_.finest_level);
+  const Solution found = local_.align_checked(*scan_.features, prior, scan_.finest_level);
   if (phase_ == Phase::starting) return found;
   return relocalizer_.follow_turn(found, scan_, prior, history_, local_);
 }
