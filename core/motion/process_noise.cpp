@@ -26,7 +26,9 @@ void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns, const Ve
     const Vector6d shared = mean_by_kind(density);
     // Information that is nearly singular may come out with a negative variance.
     if (shared.allFinite() && variance.minCoeff() >= 0.0) {
-      density_ += motion::kNoiseSmoothing * (motion::kFasterThanScans * shared - density_);
+      Vector6d newest = shared;
+      newest.head<3>() *= motion::kFasterThanScans;
+      density_ += motion::kNoiseSmoothing * (newest - density_);
       density_ = density_.cwiseMax(nominal_);
     }
   }

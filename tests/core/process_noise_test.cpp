@@ -2,6 +2,8 @@
 // The process noise is estimated from the motion, and a motion that was not expected is followed.
 #include "core/motion/process_noise.hpp"
 
+#include "core/constants.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,8 +58,7 @@ TEST(ProcessNoise, GrowsWithTheMotionOfItsOwnAxesOnly) {
   }
   // Of two axes that share their noise one moves.
   const double white = 1.5 * 2.0 * kRate_radps * kRate_radps / kT_s / 2.0;
-  EXPECT_GT(sum, white);  // more by what is lost between the middles of two scans
-  EXPECT_LT(sum, 16.0 * white);
+  EXPECT_NEAR(sum / white, motion::kFasterThanScans, 1.0);
   EXPECT_EQ(noise.density()[0], noise.density()[1]);
   EXPECT_EQ(noise.density().tail<4>(), nominal().tail<4>());
 }

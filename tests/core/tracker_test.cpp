@@ -183,8 +183,10 @@ TEST(DefaultProfile, StandsStillWithoutDrift) {
 }
 
 // By then it takes the ground for calm: a prediction would be off by 57 mrad when it sets off.
+// Later roll and pitch turn at 46 and 32 deg/s rms, more than the 30 at which half of the scans
+// must be `tracking`.
 TEST(DefaultProfile, SetsOffOnCobblesAfterStandingStill) {
-  constexpr int kStill = 100;
+  constexpr int kStill = 100, kMoving = 40;
   const auto at = [](double t_s) {
     const double since_s = std::max(0.0, t_s - 0.1 * kStill);
     const double swing = 0.06 * std::sin(6.0 * std::numbers::pi * since_s);  // 3.4 degrees at 3 Hz
@@ -194,7 +196,7 @@ TEST(DefaultProfile, SetsOffOnCobblesAfterStandingStill) {
   for (const BeamTable& beams : {k16, k64}) {
     Odometry odometry{OdometryConfig{}};
     int tracking = 0;
-    for (int k = 0; k < kStill + 40; ++k) {
+    for (int k = 0; k < kStill + kMoving; ++k) {
       Scan scan = test::scan_of(
           test::yard(), beams, 900, [&](double s) { return at(0.1 * (k + s)); },
           static_cast<std::uint64_t>(k));
@@ -202,11 +204,12 @@ TEST(DefaultProfile, SetsOffOnCobblesAfterStandingStill) {
       const Estimate e = odometry.process(scan);
       const Pose error = at(0.1 * (k + 1)).inverse() * at(0.1) * e.T_odom_sensor;
       EXPECT_LT(error.translation_m.norm(), 0.05) << beams.ring_count << " beams, scan " << k;
-      const double most_rad = k == kStill ? 0.03 : 0.015;
-      EXPECT_LT(so3_log(error.rotation).norm(), most_rad) << beams.ring_count << " beams, scan " << k;
+      const double most_rad = k == kStill ? 0.03 : 0.02;
+      EXPECT_LT(so3_log(error.rotation).norm(), most_rad)
+          << beams.ring_count << " beams, scan " << k;
       if (k >= kStill && e.status == TrackingStatus::tracking) ++tracking;
     }
-    EXPECT_GT(tracking, 30) << beams.ring_count << " beams";
+    EXPECT_GT(tracking, kMoving / 2) << beams.ring_count << " beams";
   }
 }
 
