@@ -3,6 +3,7 @@
 
 #include "core/constants.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -51,6 +52,16 @@ void add_gaussian_prior(const Prior& prior, const Unknowns& x, NormalMatrix& H, 
 }
 
 }  // namespace
+
+void observe_velocity(Prior& prior, const Eigen::Vector3d& velocity_mps,
+                      const Eigen::Vector3d& information) {
+  constexpr int kVelocity = 9;  // of a knot
+  const Eigen::Vector3d lack_mps = velocity_mps - prior.T_begin.rotation * prior.twist.linear_mps;
+  Knot sum = prior.begin_information * prior.begin_mean;
+  sum.segment<3>(kVelocity) += information.cwiseProduct(lack_mps);
+  prior.begin_information.diagonal().segment<3>(kVelocity) += information;
+  prior.begin_mean = prior.begin_information.ldlt().solve(sum);
+}
 
 void add_prior(const Prior& prior, const Unknowns& x, NormalMatrix& H, Unknowns& b) {
   add_gaussian_prior(inflated(prior, normalised_innovation(prior, x)), x, H, b);

@@ -30,6 +30,11 @@ struct Prior {
   bool has_heavy_tails = true;  ///< an innovation inflates the process noise
 };
 
+/// Adds what is known of the velocity at the beginning besides the last scan: `velocity_mps` with
+/// `information` (s^2/m^2), both along the odometry's axes.
+void observe_velocity(Prior& prior, const Eigen::Vector3d& velocity_mps,
+                      const Eigen::Vector3d& information);
+
 /// The mean over the axes (rotation, translation) that share their process noise. Roll and pitch
 /// share one, and so do the two axes of the ground plane; yaw and height have their own.
 Vector6d mean_by_kind(const Vector6d& of_axes);

@@ -11,7 +11,7 @@ KnotInformation initial_information() {
   Knot sigma;
   sigma << Vector6d::Constant(motion::kInitialPose), motion::kInitialTilt_radps,
       motion::kInitialTilt_radps, motion::kInitialYaw_radps, motion::kInitialSpeed_mps,
-      motion::kInitialSpeed_mps, motion::kInitialClimb_mps;
+      motion::kInitialSpeed_mps, motion::kClimb_mps;
   return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
 }
 

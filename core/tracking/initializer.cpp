@@ -81,15 +81,9 @@ double Initializer::since_first_s(std::size_t k) const {
 
 /// Adds the prior of the speed along the ground to the prediction.
 void Initializer::add_velocity_prior(const Start& start, Prior& prior) {
-  const Eigen::Vector3d lack_mps =
-      prior.T_begin.rotation * (start.velocity_mps - prior.twist.linear_mps);
-  const double weight = 1.0 / (start.sigma_mps * start.sigma_mps);
-  KnotInformation both = prior.begin_information;
-  both.diagonal().segment<2>(9).array() += weight;
-  Knot sum = prior.begin_information * prior.begin_mean;
-  sum.segment<2>(9) += weight * lack_mps.head<2>();
-  prior.begin_mean = both.ldlt().solve(sum);
-  prior.begin_information = both;
+  const double information = 1.0 / (start.sigma_mps * start.sigma_mps);
+  observe_velocity(prior, prior.T_begin.rotation * start.velocity_mps,
+                   {information, information, 0.0});
 }
 
 Initializer::Start Initializer::search() {

@@ -77,7 +77,8 @@ class Tracker {
   void begin_map();
   [[nodiscard]] bool is_first() const { return initializer_.scans() == 1; }
   Prior begin_scan(const std::vector<Feature>& features);
-  std::optional<Solution> solve(const Prior& prior);
+  [[nodiscard]] Prior prior_of_alignment(Prior predicted) const;
+  std::optional<Solution> solve(const Prior& predicted);
   std::optional<Solution> relocalize(const Solution& at_prediction, const Prior& prior);
   [[nodiscard]] bool is_lost(const Solution& solution) const;
   [[nodiscard]] Alignment judge(const Solution& solution) const;
