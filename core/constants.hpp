@@ -134,7 +134,8 @@ inline constexpr double kLongestGap_s = 2.5;
 inline constexpr double kInitialPose = 1e-4;
 /// m/s, 1 sigma of the horizontal velocity before the first scan. Range: 10 to 40.
 inline constexpr double kInitialSpeed_mps = 20.0;
-/// m/s, 1 sigma of the vertical velocity before the first scan, and in rooms. Range: 0.3 to 1.
+/// m/s, 1 sigma of the vertical velocity before the first scan, and of every scan in rooms. Range:
+/// 0.3 to 1.
 inline constexpr double kClimb_mps = 0.5;
 /// rad/s, the same of the rates: yaw; roll and pitch.
 inline constexpr double kInitialYaw_radps = 0.5, kInitialTilt_radps = 0.1;
@@ -142,10 +143,10 @@ inline constexpr double kInitialYaw_radps = 0.5, kInitialTilt_radps = 0.1;
 /// Weight of the newest scan in the estimate of the process noise: about a second. Range: 0.1 to
 /// 0.3.
 inline constexpr double kNoiseSmoothing = 0.1;
-/// Factor of that estimate for rotation: what shakes faster than the scans come cancels in part
-/// between the middles of two. A body that is shaken so fast turns, but hardly moves: 5 m/s^2 at
-/// 20 Hz are 0.3 mm. Range: 8 to 16; with 32 one drive through rooms of 16 was lost.
-inline constexpr double kFasterThanScans = 16.0;
+/// Factors of that estimate: what shakes faster than the scans come cancels in part between the
+/// middles of two. Rotation (range: 8 to 16; with 32 one of 16 drives through rooms was lost) and
+/// translation (range: 1 to 8), which shaking changes less: 5 m/s^2 are 5 mm at 5 Hz, 0.3 at 20 Hz.
+inline constexpr double kFasterRotation = 16.0, kFasterTranslation = 8.0;
 /// Seconds: shorter intervals between scans tell no process noise.
 inline constexpr double kLeastInterval_s = 0.01;
 

@@ -27,7 +27,8 @@ void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns, const Ve
     // Information that is nearly singular may come out with a negative variance.
     if (shared.allFinite() && variance.minCoeff() >= 0.0) {
       Vector6d newest = shared;
-      newest.head<3>() *= motion::kFasterThanScans;
+      newest.head<3>() *= motion::kFasterRotation;
+      newest.tail<3>() *= motion::kFasterTranslation;
       density_ += motion::kNoiseSmoothing * (newest - density_);
       density_ = density_.cwiseMax(nominal_);
     }

@@ -58,7 +58,7 @@ TEST(ProcessNoise, GrowsWithTheMotionOfItsOwnAxesOnly) {
   }
   // Of two axes that share their noise one moves.
   const double white = 1.5 * 2.0 * kRate_radps * kRate_radps / kT_s / 2.0;
-  EXPECT_NEAR(sum / white, motion::kFasterThanScans, 1.0);
+  EXPECT_NEAR(sum / white, motion::kFasterRotation, 1.0);
   EXPECT_EQ(noise.density()[0], noise.density()[1]);
   EXPECT_EQ(noise.density().tail<4>(), nominal().tail<4>());
 }
