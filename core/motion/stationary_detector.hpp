@@ -6,7 +6,7 @@
 
 namespace lilo::core {
 
-/// Whether the sensor is stationary. Such a sensor is where it was after any gap.
+/// Whether the sensor is stationary. Such a sensor is waited for while scans are missing.
 class StationaryDetector {
  public:
   /// The sensor is assumed to be stationary there.

@@ -3,6 +3,7 @@
 
 #include "core/constants.hpp"
 #include "core/image/selection.hpp"
+#include "core/motion/motion_prior.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 #include "core/tracking/tracker.hpp"
 
 #include "core/constants.hpp"
+#include "core/motion/motion_prior.hpp"
 #include "core/registration/weak_directions.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -118,28 +119,28 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
   return local_.predict(scan_.timing);
 }
 
-/// In rooms 16 beams see little of floor and ceiling, and a height that nothing holds would go on
-/// with the speed of its last error.
+/// In rooms little is seen of floor and ceiling, and a height that neither shows would go on with
+/// the speed of its last error.
 Prior Tracker::prior_of_alignment(Prior predicted) const {
-  constexpr double kInformation = 1.0 / (motion::kClimb_mps * motion::kClimb_mps);
+  const double information = 1.0 / (motion::kClimb_mps * motion::kClimb_mps);
   if (scan_.is_room) {
-    observe_velocity(predicted, Eigen::Vector3d::Zero(), {0.0, 0.0, kInformation});
+    observe_velocity(predicted, Eigen::Vector3d::Zero(), {0.0, 0.0, information});
   }
   return predicted;
 }
 
 /// None where the session is to end.
 std::optional<Solution> Tracker::solve(const Prior& predicted) {
-  const Prior prior = prior_of_alignment(predicted);
   // A sensor that was just switched on is mostly stationary. After a map was given up, more scans
   // must tell.
   if (initializer_.scans() == 2) return initializer_.align_second(session_.restarts == 0, local_);
   if (phase_ == Phase::lost && scan_.says_enough()) {
-    return relocalize(local_.align(*scan_.features, prior, scan_.finest_level), prior);
+    return relocalize(local_.align(*scan_.features, predicted, scan_.finest_level), predicted);
   }
-  const Solution found = local_.align_checked(*scan_.features, prior, scan_.finest_level);
+  const Solution found =
+      local_.align_checked(*scan_.features, prior_of_alignment(predicted), scan_.finest_level);
   if (phase_ == Phase::starting) return found;
-  return relocalizer_.follow_turn(found, scan_, prior, history_, local_);
+  return relocalizer_.follow_turn(found, scan_, predicted, history_, local_);
 }
 
 /// The prediction, if the sensor is not found. None if it was unseen for longer than the search

@@ -53,21 +53,6 @@ TEST(Predict, StaysWhereItWasOverALongGapOrAStepOfTheClock) {
   }
 }
 
-// Two normal distributions of the speed: their mean, weighted with the information of each.
-TEST(ObserveVelocity, TheSpeedComesBetweenThePredictedAndTheObserved) {
-  Prior prior = predict(driving(), scan_after(0.0), kDensity, 2);
-  prior.T_begin.rotation = so3_exp({0.0, 0.0, 0.5});
-  prior.begin_information = 2.0 * KnotInformation::Identity();
-  const Eigen::Vector3d predicted_mps = prior.T_begin.rotation * prior.twist.linear_mps;
-  observe_velocity(prior, {1.0, 3.0, -4.0}, {6.0, 0.0, 2.0});
-  const Eigen::Vector3d speed_mps = predicted_mps + prior.begin_mean.tail<3>();
-  EXPECT_NEAR(speed_mps.x(), 0.25 * predicted_mps.x() + 0.75 * 1.0, 1e-9);
-  EXPECT_NEAR(speed_mps.y(), predicted_mps.y(), 1e-9);
-  EXPECT_NEAR(speed_mps.z(), -2.0, 1e-9);
-  EXPECT_TRUE(prior.begin_mean.head<9>().isZero(1e-12));
-  EXPECT_EQ(prior.begin_information.diagonal().tail<3>(), Eigen::Vector3d(8.0, 2.0, 4.0));
-}
-
 // All returns are those of the last firing: the trajectory begins where the last scan ended.
 TEST(Predict, ReachesBackToTheLastScanWhereReturnsWereCompensated) {
   ScanTiming scan = scan_after(0.05);
@@ -99,6 +84,29 @@ TEST(ScanTiming, FollowsWhereNoFiringIsMissing) {
   EXPECT_FALSE(scan.follows(990'000'000));
   EXPECT_NEAR(scan.span_s(), 0.1, 1e-12);
   EXPECT_NEAR((ScanTiming{5, 5}.span_s()), 0.1, 1e-12) << "stamps that tell nothing";
+}
+
+// Against the update of a Kalman filter, which works on covariances.
+TEST(ObserveVelocity, IsTheUpdateOfAKalmanFilter) {
+  Prior prior = predict(driving(), scan_after(0.0), kDensity, 2);
+  prior.T_begin.rotation = so3_exp({0.0, 0.0, 0.5});
+  const KnotInformation mixed = KnotInformation::Identity() + 0.1 * KnotInformation::Ones();
+  prior.begin_information = mixed;
+  const Eigen::Vector3d predicted_mps = prior.T_begin.rotation * prior.twist.linear_mps;
+  const Eigen::Vector3d information(6.0, 1e-12, 2.0);
+  KnotInformation P = mixed.inverse();
+  Knot mean = Knot::Zero();
+  for (const Eigen::Vector3d& observed_mps :
+       {Eigen::Vector3d(1.0, 3.0, -4.0), Eigen::Vector3d(2.0, 0.0, 1.0)}) {
+    observe_velocity(prior, observed_mps, information);
+    const Eigen::Matrix3d R = information.cwiseInverse().asDiagonal();
+    const Eigen::Matrix<double, kKnotSize, 3> gain =
+        P.rightCols<3>() * (P.bottomRightCorner<3, 3>() + R).inverse();
+    mean += gain * (observed_mps - predicted_mps - mean.tail<3>());
+    P -= gain * P.bottomRows<3>();
+  }
+  EXPECT_LT((prior.begin_mean - mean).norm(), 1e-9);
+  EXPECT_LT((prior.begin_information.inverse() - P).norm(), 1e-9);
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST(Solver, FindsTheMotionWithinAScan) {
   EXPECT_LT((found.trajectory.end_twist().linear_mps - twist.linear_mps).norm(), 0.3);
 }
 
-/// The distance of a wall ahead that lies on no border of cells, as those of the room.
+/// The distance of a wall ahead, which lies on no border of cells either.
 constexpr double kWall_m = 10.1;
 
 /// Two walls ahead that disagree: what is low says that the sensor came `low_m` forward, what is
@@ -110,7 +110,7 @@ LocalMaps wall_map() {
   std::vector<Eigen::Vector3d> points;
   points.reserve(60000);
   for (int k = 0; k < 60000; ++k) {
-    Eigen::Vector3d& p = points.emplace_back();
+    Eigen::Vector3d& p = points.emplace_back();  // one by one: the order of arguments is free
     p.x() = kWall_m + rough(rng);
     p.y() = side(rng);
     p.z() = height(rng);

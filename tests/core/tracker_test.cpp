@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -67,8 +69,12 @@ const std::vector<test::Plane> kWallsOfRoom = {{{-1.0, 0.0, 0.0}, -4.0},
                                                {{0.0, -1.0, 0.0}, -3.0},
                                                {{0.0, 1.0, 0.0}, -3.0}};
 
-/// The largest error of the height in a sensor that is carried by hand through that room.
-double worst_height_m(const test::Scene& room, std::uint64_t scans) {
+// By hand through a room of 8 x 6 m whose floor 16 beams do not reach: only the ceiling, 1.1 m
+// above, tells the height.
+TEST(DefaultProfile, TheCeilingHoldsTheHeightInARoom) {
+  test::Scene room;
+  room.planes = kWallsOfRoom;
+  room.planes.push_back({{0.0, 0.0, -1.0}, -1.1});
   const auto carried = [](double t_s) {
     const double step = std::min(t_s, 1.0) * std::sin(5.0 * t_s);
     return Pose{so3_exp({0.05 * step, 0.04 * step, 0.1 * t_s}), {0.2 * t_s, 0.0, 0.08 * step}};
@@ -76,7 +82,7 @@ double worst_height_m(const test::Scene& room, std::uint64_t scans) {
   Odometry odometry{OdometryConfig{}};
   std::mt19937 rng(3);
   double worst_m = 0.0;
-  for (std::uint64_t k = 0; k < scans; ++k) {
+  for (std::uint64_t k = 0; k < 40; ++k) {
     const double at_s = 0.1 * static_cast<double>(k);
     Scan scan = test::scan_of(
         room, k16, 900, [&](double s) { return carried(at_s + 0.1 * s); }, k);
@@ -85,19 +91,11 @@ double worst_height_m(const test::Scene& room, std::uint64_t scans) {
     const Pose truth = carried(at_s + 0.1);
     worst_m = std::max(worst_m, std::abs(found.translation_m.z() - truth.translation_m.z()));
   }
-  return worst_m;
+  EXPECT_LT(worst_m, 0.03);
 }
 
-// By hand through a room of 8 x 6 m whose floor 16 beams do not reach: only the ceiling, 1.1 m
-// above, tells the height.
-TEST(DefaultProfile, TheCeilingHoldsTheHeightInARoom) {
-  test::Scene room;
-  room.planes = kWallsOfRoom;
-  room.planes.push_back({{0.0, 0.0, -1.0}, -1.1});
-  EXPECT_LT(worst_height_m(room, 40), 0.03);
-}
-
-// Lifted by half a metre. Then neither floor nor ceiling is seen any more.
+// Lifted by half a metre. Then neither floor nor ceiling is seen any more: the error grows to 0.9
+// m, and without a prior of the vertical speed to 3.5 m.
 TEST(DefaultProfile, AHeightThatNothingShowsDoesNotRunAwayInARoom) {
   constexpr std::uint64_t kSeen = 18, kUnseen = 50;
   const auto lifted = [](double t_s) {
@@ -214,7 +212,7 @@ TEST(DefaultProfile, StandsStillWithoutDrift) {
   }
 }
 
-// By then it takes the ground for calm: a prediction would be off by 57 mrad when it sets off.
+// By then it takes the ground for calm: a prediction would be off by 70 mrad when it sets off.
 // Later roll and pitch turn at 46 and 32 deg/s rms, more than the 30 at which half of the scans
 // must be `tracking`.
 TEST(DefaultProfile, SetsOffOnCobblesAfterStandingStill) {
