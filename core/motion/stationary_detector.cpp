@@ -5,8 +5,8 @@
 
 namespace lilo::core {
 
-void StationaryDetector::assume(const Pose& T_odom_sensor) {
-  T_odom_sensor_ = T_odom_sensor;
+void StationaryDetector::assume(const Eigen::Vector3d& place_m) {
+  place_m_ = place_m;
   is_stationary_ = true;
 }
 
@@ -15,16 +15,15 @@ void StationaryDetector::reset() {
   slow_scans_ = 0;
 }
 
-void StationaryDetector::observe(const Pose& T_odom_sensor, const Twist& twist) {
+void StationaryDetector::observe(const Eigen::Vector3d& place_m, const Twist& twist) {
   if (is_stationary_) {
-    const Eigen::Vector3d moved_m = T_odom_sensor.translation_m - T_odom_sensor_.translation_m;
-    if (moved_m.norm() > motion::kSetOff_m) reset();
+    if ((place_m - place_m_).norm() > motion::kSetOff_m) reset();
     return;
   }
   const bool slow = twist.linear_mps.norm() < motion::kStationary_mps &&
                     twist.angular_radps.norm() < motion::kStationary_radps;
   slow_scans_ = slow ? slow_scans_ + 1 : 0;
-  if (slow_scans_ >= motion::kStationaryScans) assume(T_odom_sensor);
+  if (slow_scans_ >= motion::kStationaryScans) assume(place_m);
 }
 
 }  // namespace lilo::core

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/estimate.hpp"
-#include "core/pose.hpp"
+
+#include <Eigen/Core>
 
 namespace lilo::core {
 
@@ -10,16 +11,16 @@ namespace lilo::core {
 class StationaryDetector {
  public:
   /// The sensor is assumed to be stationary there.
-  void assume(const Pose& T_odom_sensor);
+  void assume(const Eigen::Vector3d& place_m);
   void reset();
-  /// A pose was found, and the twist at its end.
-  void observe(const Pose& T_odom_sensor, const Twist& twist);
+  /// The place where it was found, and its twist there.
+  void observe(const Eigen::Vector3d& place_m, const Twist& twist);
 
   [[nodiscard]] bool is_stationary() const { return is_stationary_; }
 
  private:
-  Pose T_odom_sensor_;  // where it is stationary
-  int slow_scans_ = 0;  // in a row
+  Eigen::Vector3d place_m_ = Eigen::Vector3d::Zero();  // where it is stationary
+  int slow_scans_ = 0;                                 // in a row
   bool is_stationary_ = false;
 };
 

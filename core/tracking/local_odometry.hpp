@@ -54,10 +54,12 @@ class LocalOdometry {
   void accept_first(const ScanTiming& scan) { state_.end_ns = scan.end_ns; }
 
   /// Learns from the motion just accepted whether the sensor is stationary.
-  void observe_stationary() { stationary_.observe(state_.T_odom_sensor, state_.twist); }
+  void observe_stationary() {
+    stationary_.observe(state_.T_odom_sensor.translation_m, state_.twist);
+  }
   [[nodiscard]] bool is_stationary() const { return stationary_.is_stationary(); }
   /// The sensor is assumed to be stationary where it is.
-  void assume_stationary() { stationary_.assume(state_.T_odom_sensor); }
+  void assume_stationary() { stationary_.assume(state_.T_odom_sensor.translation_m); }
   /// Finds the weak directions of a scan that was accepted. Along them the motion is dead reckoned,
   /// and the covariance of the pose grows.
   WeakDirections find_weak_directions(const ScanTiming& scan, const Solution& solution);
