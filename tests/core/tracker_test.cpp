@@ -64,58 +64,6 @@ TEST(DefaultProfile, FollowsADriveWithSixteenBeams) {
   EXPECT_EQ(result.estimates.back().status, TrackingStatus::tracking);
 }
 
-const std::vector<test::Plane> kWallsOfRoom = {{{-1.0, 0.0, 0.0}, -4.0},
-                                               {{1.0, 0.0, 0.0}, -4.0},
-                                               {{0.0, -1.0, 0.0}, -3.0},
-                                               {{0.0, 1.0, 0.0}, -3.0}};
-
-// By hand through a room of 8 x 6 m whose floor 16 beams do not reach: only the ceiling, 1.1 m
-// above, tells the height.
-TEST(DefaultProfile, TheCeilingHoldsTheHeightInARoom) {
-  test::Scene room;
-  room.planes = kWallsOfRoom;
-  room.planes.push_back({{0.0, 0.0, -1.0}, -1.1});
-  const auto carried = [](double t_s) {
-    const double step = std::min(t_s, 1.0) * std::sin(5.0 * t_s);
-    return Pose{so3_exp({0.05 * step, 0.04 * step, 0.1 * t_s}), {0.2 * t_s, 0.0, 0.08 * step}};
-  };
-  Odometry odometry{OdometryConfig{}};
-  std::mt19937 rng(3);
-  double worst_m = 0.0;
-  for (std::uint64_t k = 0; k < 40; ++k) {
-    const double at_s = 0.1 * static_cast<double>(k);
-    Scan scan = test::scan_of(
-        room, k16, 900, [&](double s) { return carried(at_s + 0.1 * s); }, k);
-    test::add_range_noise(scan, 0.01F, rng);
-    const Pose found = carried(0.1) * odometry.process(scan).T_odom_sensor;
-    const Pose truth = carried(at_s + 0.1);
-    worst_m = std::max(worst_m, std::abs(found.translation_m.z() - truth.translation_m.z()));
-  }
-  EXPECT_LT(worst_m, 0.03);
-}
-
-// Lifted by half a metre. Then neither floor nor ceiling is seen any more: the error grows to 0.9
-// m, and without a prior of the vertical speed to 3.5 m.
-TEST(DefaultProfile, AHeightThatNothingShowsDoesNotRunAwayInARoom) {
-  constexpr std::uint64_t kSeen = 18, kUnseen = 50;
-  const auto lifted = [](double t_s) {
-    const double height_m = 0.4 * std::clamp(t_s - 0.5, 0.0, 1.3);
-    return Pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, height_m}};
-  };
-  test::Scene walls, room;
-  walls.planes = room.planes = kWallsOfRoom;
-  room.planes.push_back({{0.0, 0.0, -1.0}, -1.1});
-  Odometry odometry{OdometryConfig{}};
-  for (std::uint64_t k = 0; k < kSeen + kUnseen; ++k) {
-    const bool is_seen = k < kSeen;
-    const double at_s = 0.1 * static_cast<double>(k);
-    const auto path = [&](double s) { return lifted(at_s + 0.1 * s); };
-    const Estimate e = odometry.process(test::scan_of(is_seen ? room : walls, k16, 900, path, k));
-    const double truth_m = lifted(at_s + 0.1).translation_m.z();
-    EXPECT_NEAR(e.T_odom_sensor.translation_m.z(), truth_m, is_seen ? 0.1 : 1.5) << "scan " << k;
-  }
-}
-
 TEST(DefaultProfile, CountsWhatAFullMapHasNoRoomFor) {
   EXPECT_EQ(run(k16, 6.0, 0.0, 3).estimates.back().map_refused_count, 0U);
   OdometryConfig config;
@@ -212,9 +160,8 @@ TEST(DefaultProfile, StandsStillWithoutDrift) {
   }
 }
 
-// By then it takes the ground for calm: a prediction would be off by 70 mrad when it sets off.
-// Later roll and pitch turn at 46 and 32 deg/s rms, more than the 30 at which half of the scans
-// must be `tracking`.
+// The process noise is the least when it sets off, and a prediction would be off by 70 mrad then.
+// A swing of 3 Hz needs less freedom than shaking does: 64 beams follow it less well than 16.
 TEST(DefaultProfile, SetsOffOnCobblesAfterStandingStill) {
   constexpr int kStill = 100, kMoving = 40;
   const auto at = [](double t_s) {
@@ -222,8 +169,13 @@ TEST(DefaultProfile, SetsOffOnCobblesAfterStandingStill) {
     const double swing = 0.06 * std::sin(6.0 * std::numbers::pi * since_s);  // 3.4 degrees at 3 Hz
     return Pose{so3_exp({swing, -0.7 * swing, 0.0}), {since_s - 5.0, 0.0, 0.3 * swing}};
   };
+  struct Case {
+    BeamTable beams;
+    double most_rad;
+    int least_tracking;
+  };
   std::mt19937 rng(1);
-  for (const BeamTable& beams : {k16, k64}) {
+  for (const auto& [beams, most_rad, least_tracking] : {Case{k16, 0.015, 30}, {k64, 0.02, 20}}) {
     Odometry odometry{OdometryConfig{}};
     int tracking = 0;
     for (int k = 0; k < kStill + kMoving; ++k) {
@@ -233,13 +185,13 @@ TEST(DefaultProfile, SetsOffOnCobblesAfterStandingStill) {
       test::add_range_noise(scan, 0.02F, rng);
       const Estimate e = odometry.process(scan);
       const Pose error = at(0.1 * (k + 1)).inverse() * at(0.1) * e.T_odom_sensor;
+      const double error_rad = so3_log(error.rotation).norm();
       EXPECT_LT(error.translation_m.norm(), 0.05) << beams.ring_count << " beams, scan " << k;
-      const double most_rad = k == kStill ? 0.03 : 0.02;
-      EXPECT_LT(so3_log(error.rotation).norm(), most_rad)
+      EXPECT_LT(error_rad, k == kStill ? 0.025 : most_rad)
           << beams.ring_count << " beams, scan " << k;
       if (k >= kStill && e.status == TrackingStatus::tracking) ++tracking;
     }
-    EXPECT_GT(tracking, kMoving / 2) << beams.ring_count << " beams";
+    EXPECT_GT(tracking, least_tracking) << beams.ring_count << " beams";
   }
 }
 
