@@ -14,8 +14,8 @@ namespace lilo::core {
 /// the middle of the next, because returns from all around hold the middle. Returns of one side
 /// hold the end of a scan, and the same errors mislead the beginning of the next scan, which looks
 /// the same way. So the motion within a scan gets as much freedom as the motion from scan to scan
-/// shows: little on a smooth road, much on a shaking mast. It gets some times
-/// more (motion::kFasterRotation), since shaking that is faster than the scans cancels in part.
+/// shows, times a factor (motion::kFasterRotation), since shaking that is faster than the scans
+/// cancels in part: little on a smooth road, much on a shaking mast.
 ///
 /// Not thread-safe; no allocation.
 class ProcessNoise {
