@@ -8,8 +8,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace lilo::core {
+namespace {
+
+/// Scaled to the largest integers.
+std::array<std::int16_t, 3> direction_of(const Eigen::Vector3f& v) {
+  const float largest = v.cwiseAbs().maxCoeff();
+  if (!(largest > 0.0F)) return {};
+  const Eigen::Vector3f scaled =
+      v * (static_cast<float>(std::numeric_limits<std::int16_t>::max()) / largest);
+  return {static_cast<std::int16_t>(scaled.x()), static_cast<std::int16_t>(scaled.y()),
+          static_cast<std::int16_t>(scaled.z())};
+}
+
+}  // namespace
 
 CellMap::CellMap(const CellMapConfig& config)
     : config_(config),
@@ -19,6 +33,7 @@ CellMap::CellMap(const CellMapConfig& config)
   const auto capacity = static_cast<std::size_t>(config.capacity);
   cells_.reserve(capacity);
   sums_.reserve(capacity);
+  if (config.one_sided) rays_.assign(capacity, Eigen::Vector3f::Zero());
   if (config.with_sensitivity) sensitivities_.assign(capacity, Sensitivity::Zero());
 }
 
@@ -37,6 +52,7 @@ std::int32_t CellMap::make(const CellKey& key) {
     cells_[static_cast<std::size_t>(at)] = Cell{};
     sums_[static_cast<std::size_t>(at)] = Moments{};
   }
+  if (config_.one_sided) rays_[static_cast<std::size_t>(at)].setZero();
   if (config_.with_sensitivity) sensitivities_[static_cast<std::size_t>(at)].setZero();
   table_.insert(key.bucket, CellTable::tag_of(key.index), at);
   ++used_;
@@ -80,12 +96,9 @@ std::size_t CellMap::neighbours_of(const CellIndex& i, Neighbours& found) const 
   return count;
 }
 
-Moments CellMap::moments_around(const CellIndex& i) const {
-  Neighbours neighbours;
-  const std::size_t n = neighbours_of(i, neighbours);
+Moments CellMap::moments_around(std::span<const Neighbour> neighbours) const {
   Moments sums{};
-  for (std::size_t k = 0; k < n; ++k) {
-    const Neighbour& o = neighbours[k];
+  for (const Neighbour& o : neighbours) {
     const Moments& one = sums_[static_cast<std::size_t>(o.at)];
     const Eigen::Vector3f p = points_of(one);
     const Eigen::Vector3f q = p + count_of(one) * Eigen::Vector3f(o.x_m, o.y_m, o.z_m);
@@ -103,6 +116,12 @@ Moments CellMap::moments_around(const CellIndex& i) const {
     for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += moved[m];
   }
   return sums;
+}
+
+Eigen::Vector3f CellMap::rays_around(std::span<const Neighbour> neighbours) const {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (const Neighbour& o : neighbours) sum += rays_[static_cast<std::size_t>(o.at)];
+  return sum;
 }
 
 Sensitivity CellMap::sensitivity_around(std::int32_t at) const {
@@ -123,7 +142,9 @@ void CellMap::fit(Cell& cell) const {
   const std::uint32_t age = keyframe_ - cell.born;
   cell.refit_at = keyframe_ + std::max(1U, age / 2);
   cell.information.setZero();
-  const Moments sums = moments_around(cell.index);
+  Neighbours around;
+  const auto neighbours = std::span(around).first(neighbours_of(cell.index, around));
+  const Moments sums = moments_around(neighbours);
   const float count = count_of(sums);
   if (count < map::kMinPoints) return;
   cell.mean_m = points_of(sums) / count;
@@ -142,6 +163,8 @@ void CellMap::fit(Cell& cell) const {
     const float weight = std::max(0.0F, 1.0F / variance - 1.0F / (thin_m * thin_m));
     cell.information += weight * outer(solver.eigenvectors().col(k));
   }
+  if (config_.one_sided)
+    cell.inwards = direction_of(matrix_of(cell.information) * rays_around(neighbours));
 }
 
 void CellMap::clear() {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// A map: points summed up in small cubic cells of a hash table.
@@ -29,6 +30,9 @@ struct CellMapConfig {
   /// ground was seen. The end of a strip, at a wall or at one ring, moves with the sensor and would
   /// hold the sensor in place; the foot of the wall would make it a slope.
   bool level = false;
+  /// Whether a surface is matched from the side only from which it was seen. The two faces of a
+  /// thin wall lie in one cell, and a sensor that comes through the door sees the other one.
+  bool one_sided = false;
   /// Whether the sensitivities of the points are averaged as well.
   bool with_sensitivity = false;
   /// The most cells. Points that need another one are left out and counted.
@@ -62,15 +66,18 @@ class CellMap {
 
   explicit CellMap(const CellMapConfig& config);
 
-  /// Adds a point of the odometry frame.
-  void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& gap_m) {
+  /// Adds a point of the odometry frame. `ray`: unit vector from the sensor to it; zero: not known.
+  void insert(const Eigen::Vector3d& point_m, const Eigen::Vector3f& gap_m,
+              const Eigen::Vector3f& ray = Eigen::Vector3f::Zero()) {
     const CellKey key = key_of(point_m);
-    add(find_or_insert(key), key, point_m, SampleGap(gap_m));
+    add(find_or_insert(key), key, point_m, SampleGap(gap_m), ray);
   }
 
-  /// The distribution around a point. Fits are cached: a cell is fitted again when its age in
-  /// keyframes has grown by half.
-  Match find(const Eigen::Vector3d& point_m) { return match(cell_at(key_of(point_m)), point_m); }
+  /// The distribution around a point that is seen along `ray` (of any length; zero: not known).
+  /// Fits are cached: a cell is fitted again when its age in keyframes has grown by half.
+  Match find(const Eigen::Vector3d& point_m, const Eigen::Vector3f& ray = Eigen::Vector3f::Zero()) {
+    return match(cell_at(key_of(point_m)), point_m, ray);
+  }
 
   /// find() and insert() in steps. Each step but the last prefetches what the next one reads: taken
   /// for many points at a time, no step waits for the memory.
@@ -95,11 +102,11 @@ class CellMap {
     if (at != kNone) __builtin_prefetch(&cells_[static_cast<std::size_t>(at)]);
     return at;
   }
-  Match match(std::int32_t at, const Eigen::Vector3d& point_m) {
+  Match match(std::int32_t at, const Eigen::Vector3d& point_m, const Eigen::Vector3f& ray) {
     if (at == kNone) return {};
     Cell& cell = cells_[static_cast<std::size_t>(at)];
     if (keyframe_ >= cell.refit_at) fit(cell);
-    if (cell.information.isZero(0.0F)) return {};
+    if (cell.information.isZero(0.0F) || is_behind(cell, ray)) return {};
     return {(point_m - center_of(cell.index)).cast<float>() - cell.mean_m, &cell.information};
   }
   /// Mean of the points that match() answers with: all those around. Zero without sensitivities.
@@ -112,7 +119,8 @@ class CellMap {
     return at;
   }
   void add(std::int32_t at, const CellKey& key, const Eigen::Vector3d& point_m,
-           const SampleGap& gap, const Sensitivity& sensitivity = Sensitivity::Zero()) {
+           const SampleGap& gap, const Eigen::Vector3f& ray,
+           const Sensitivity& sensitivity = Sensitivity::Zero()) {
     if (at == kNone) return;
     Moments& sums = sums_[static_cast<std::size_t>(at)];
     // A gap longer than the window of three cells fills all of it.
@@ -122,6 +130,10 @@ class CellMap {
     const Eigen::Vector3f p = (point_m - center_of(key.index)).cast<float>();
     const float kept = count_of(sums) >= config_.memory ? kept_ : 1.0F;
     add_to(sums, kept, moments_of(p, spread, gap.outer_m2));
+    if (config_.one_sided) {
+      Eigen::Vector3f& rays = rays_[static_cast<std::size_t>(at)];
+      rays = kept * rays + ray;
+    }
     if (!config_.with_sensitivity) return;
     Sensitivity& sum = sensitivities_[static_cast<std::size_t>(at)];
     sum = kept * sum + sensitivity;
@@ -159,6 +171,7 @@ class CellMap {
     std::uint32_t refit_at = 0;                        // keyframe from which the fit is out of date
     Eigen::Vector3f mean_m = Eigen::Vector3f::Zero();  // from the cell's centre
     Symmetric information = Symmetric::Zero();         // zero: too few points
+    std::array<std::int16_t, 3> inwards{};  // into the surface; only its direction counts
   };
   struct Neighbour {
     std::int32_t at;
@@ -188,10 +201,16 @@ class CellMap {
     __builtin_prefetch(&sums.front());
     __builtin_prefetch(&sums.back());
   }
+  /// Whether a ray comes from the other side of the surface than those of the map's points.
+  static bool is_behind(const Cell& cell, const Eigen::Vector3f& ray) {
+    const auto in = [&](std::size_t axis) { return static_cast<float>(cell.inwards[axis]); };
+    return ray.x() * in(0) + ray.y() * in(1) + ray.z() * in(2) < 0.0F;
+  }
   std::int32_t make(const CellKey& key);
   /// Finds those of the 27 cells around and including one that exist. Returns how many.
   std::size_t neighbours_of(const CellIndex& i, Neighbours& found) const;
-  [[nodiscard]] Moments moments_around(const CellIndex& i) const;
+  [[nodiscard]] Moments moments_around(std::span<const Neighbour> neighbours) const;
+  [[nodiscard]] Eigen::Vector3f rays_around(std::span<const Neighbour> neighbours) const;
   void fit(Cell& cell) const;
   void remove(std::size_t slot);
   /// The part of the radius of forget_beyond() for which there is room.
@@ -205,6 +224,7 @@ class CellMap {
   CellTable table_;
   std::vector<Cell> cells_;
   std::vector<Moments> sums_;               // what insert() sums, from the cell's centre
+  std::vector<Eigen::Vector3f> rays_;       // sums of unit vectors, where sides count
   std::vector<Sensitivity> sensitivities_;  // sums as well, where they are asked for
   std::int32_t free_ = kNone;               // the cell removed last; it names the one before
   std::size_t sweep_ = 0;

@@ -41,7 +41,7 @@ void LocalMaps::insert(std::span<const Point> points, std::size_t finest) {
       const CellMap::SampleGap gap(some[k].gap_m);
       for (std::size_t level = finest; level < kLevels; ++level) {
         at(level, some[k].kind)
-            .add(waiting[k].cell[level], waiting[k].key[level], some[k].point_m, gap,
+            .add(waiting[k].cell[level], waiting[k].key[level], some[k].point_m, gap, some[k].ray,
                  some[k].sensitivity);
       }
     }

@@ -43,6 +43,8 @@ class LocalMaps {
     Eigen::Vector3d point_m;
     Eigen::Vector3f gap_m;
     FeatureKind kind;
+    Eigen::Vector3f ray =
+        Eigen::Vector3f::Zero();  ///< unit vector from the sensor; zero: not known
     Sensitivity sensitivity = Sensitivity::Zero();
   };
   void insert(std::span<const Point> points, std::size_t finest);

@@ -57,6 +57,7 @@ std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t fi
     one.cached = &cached_cells_[k];
     one.turned_m = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
     one.point_m = one.turned_m.cast<double>() + sampled_.origin_m(f.s);
+    one.ray = sides_ == Sides::seen ? one.turned_m : Eigen::Vector3f::Zero();
   }
   return n;
 }
@@ -78,7 +79,7 @@ void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t 
     }
     n = 0;
     for (Correspondence* one : left) {
-      one->match = maps.at(level, one->feature->kind).match(one->cell, one->point_m);
+      one->match = maps.at(level, one->feature->kind).match(one->cell, one->point_m, one->ray);
       if (one->match.information == nullptr) unmatched[n++] = one;
     }
   }
@@ -214,7 +215,8 @@ Solution Solver::unaligned(const Prior& prior) const {
 }
 
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
-                       std::size_t finest) {
+                       std::size_t finest, Sides sides) {
+  sides_ = sides;
   // Far from the solution residuals are larger than noise and what moves: a wide kernel first, then
   // the tight one (graduated non-convexity; Yang et al., RA-L 2020). And a part of the features
   // shows the way as well as all of them.

@@ -49,6 +49,12 @@ struct Solution {
 /// translation; then -J'Or.
 using ResidualSums = Eigen::Matrix<double, 6 + 9 + 6 + 6, 1>;
 
+/// Which sides of the map's surfaces a scan may be matched with.
+enum class Sides {
+  seen,  ///< those from which they were seen
+  both   ///< thin walls may be off by their width
+};
+
 /// Aligns features with the maps. Keeps its working memory between calls.
 class Solver {
  public:
@@ -60,7 +66,7 @@ class Solver {
   [[nodiscard]] Solution unaligned(const Prior& prior) const;
   /// `finest`: the finest level of the maps, used once the solution is near.
   Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
-                 std::size_t finest = LocalMaps::kWhole);
+                 std::size_t finest = LocalMaps::kWhole, Sides sides = Sides::seen);
 
   /// What the residuals of a solution say of the beams. The map is as it was for solve().
   BeamEquations beam_equations(const std::vector<Feature>& features, LocalMaps& maps,
@@ -74,6 +80,7 @@ class Solver {
     LocalMaps::PerLevel* cached = nullptr;  // its cells in the step before
     Eigen::Vector3f turned_m;               // in the odometry's axes, from the sensor
     Eigen::Vector3d point_m;                // in the odometry's frame
+    Eigen::Vector3f ray;                    // from the sensor; zero: both sides are matched
     CellMap::CellKey key;
     std::int32_t cell = CellMap::kNone;
     std::size_t level = 0;  // of the cell
@@ -106,6 +113,7 @@ class Solver {
 
   SolverConfig config_;
   HeightWeights height_weights_;  // of the scan being solved
+  Sides sides_ = Sides::seen;     // the same
   Sampled sampled_;
   std::array<ResidualSums, registration::kResidualInstants + 1> bins_;
   std::array<Correspondence, kAtATime> correspondences_;

@@ -21,6 +21,7 @@ BeamEquations Solver::beam_equations(const std::vector<Feature>& features, Local
                                      const Trajectory& trajectory) {
   BeamEquations sums;
   sample(trajectory, sampled_);
+  sides_ = Sides::seen;
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
   for (std::size_t k = 0, n = 0; k < features.size(); k += n * calibration::kStride) {
     n = look_up(features, k, calibration::kStride);

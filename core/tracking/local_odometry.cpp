@@ -33,13 +33,13 @@ LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_featu
       least_segments_(config.segments) {}
 
 Solution LocalOdometry::align_checked(const std::vector<Feature>& features, const Prior& prior,
-                                      std::size_t finest_level) {
+                                      std::size_t finest_level, Sides sides) {
   const double exceptional = tracking::kExceptionalSigmas * tracking::kExceptionalSigmas;
-  Solution found = align(features, prior, finest_level);
+  Solution found = align(features, prior, finest_level, sides);
   if (normalised_innovation(prior, found.trajectory.knots).maxCoeff() < exceptional) return found;
   Prior usual_prior = prior;
   usual_prior.has_heavy_tails = false;
-  Solution usual = align(features, usual_prior, finest_level);
+  Solution usual = align(features, usual_prior, finest_level, sides);
   return is_significant(found.inliers, usual.inliers, search::kDropSigmas) ? found : usual;
 }
 

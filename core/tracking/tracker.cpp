@@ -129,6 +129,18 @@ Prior Tracker::prior_of_alignment(Prior predicted) const {
   return predicted;
 }
 
+/// Where the sensor comes through a wall or out of foliage, it may see nothing that it saw before
+/// but the other sides. They hold the sensor until the map knows more.
+Solution Tracker::align_from_prediction(const Prior& prior) {
+  Solution found = local_.align_checked(*scan_.features, prior, scan_.finest_level);
+  if (phase_ == Phase::starting) return found;
+  if (!is_lost(found) &&
+      history_.fit.relative(found, scan_.structure) > registration::kDoubtfulFit) {
+    return found;
+  }
+  return local_.align_checked(*scan_.features, prior, scan_.finest_level, Sides::both);
+}
+
 /// None where the session is to end.
 std::optional<Solution> Tracker::solve(const Prior& predicted) {
   // A sensor that was just switched on is mostly stationary. After a map was given up, more scans
@@ -137,8 +149,7 @@ std::optional<Solution> Tracker::solve(const Prior& predicted) {
   if (phase_ == Phase::lost && scan_.says_enough()) {
     return relocalize(local_.align(*scan_.features, predicted, scan_.finest_level), predicted);
   }
-  const Solution found =
-      local_.align_checked(*scan_.features, prior_of_alignment(predicted), scan_.finest_level);
+  const Solution found = align_from_prediction(prior_of_alignment(predicted));
   if (phase_ == Phase::starting) return found;
   return relocalizer_.follow_turn(found, scan_, predicted, history_, local_);
 }

@@ -39,6 +39,24 @@ TEST_F(Filled, AWallInformsAlongItsNormalOnly) {
   EXPECT_LT(O(2, 2), 0.01F * n.dot(O * n));
 }
 
+// A wall of a room is seen again in the next room, from the other side and by its width nearer.
+TEST_F(Filled, AWallIsMatchedFromTheSideOnlyThatWasSeen) {
+  CellMap walls({.one_sided = true});
+  for (int k = 0; k < 4000; ++k) {
+    const Eigen::Vector3d on_wall(5.0, uniform(-3, 3), uniform(-3, 3));
+    walls.insert(on_wall, no_reach_, on_wall.cast<float>().normalized());  // from the origin
+  }
+  const Eigen::Vector3d probe(5.1, 1.0, 0.2);
+  const auto knows = [&](const Eigen::Vector3f& ray) {
+    return walls.find(probe, ray).information != nullptr;
+  };
+  EXPECT_TRUE(knows({1.0F, 0.0F, 0.0F}));
+  EXPECT_TRUE(knows({0.2F, -1.0F, 0.3F}));  // along the wall
+  EXPECT_FALSE(knows({-1.0F, 0.0F, 0.0F}));
+  EXPECT_FALSE(knows({-0.2F, 1.0F, 0.3F}));
+  EXPECT_TRUE(knows({0.0F, 0.0F, 0.0F}));  // from both sides, then
+}
+
 TEST_F(Filled, ATrunkInformsAcrossItsAxisOnly) {
   for (int k = 0; k < 2000; ++k) {
     const double angle = uniform(0.0, 3.1);  // the side that is seen

@@ -10,11 +10,12 @@ namespace lilo::core {
 namespace {
 
 constexpr double kSpan_s = 0.1;
+constexpr double kFront_m = 6.1;  // of the room
 
 /// A room of 12 m by 9 m, 4 m high, the sensor in it. No wall lies on the border of cells: its
 /// points would fall into those on one side only.
 std::vector<Eigen::Vector3d> room(unsigned seed, int count) {
-  constexpr double kBack_m = -5.9, kFront_m = 6.1, kRight_m = -4.1, kLeft_m = 4.9, kFloor_m = -1.4,
+  constexpr double kBack_m = -5.9, kRight_m = -4.1, kLeft_m = 4.9, kFloor_m = -1.4,
                    kCeiling_m = 2.6;
   std::mt19937 rng(seed);
   std::uniform_real_distribution<double> x(kBack_m, kFront_m), y(kRight_m, kLeft_m),
@@ -32,12 +33,16 @@ std::vector<Eigen::Vector3d> room(unsigned seed, int count) {
   return points;
 }
 
-LocalMaps map_of(const std::vector<Eigen::Vector3d>& points, const Pose& T_odom_room) {
+LocalMaps empty_maps() {
   const auto level = [](float cell_m) {
-    const CellMapConfig config{.cell_m = cell_m, .capacity = 20000};
+    const CellMapConfig config{.cell_m = cell_m, .one_sided = true, .capacity = 20000};
     return std::array{config, config};
   };
-  LocalMaps maps({level(0.25F), level(0.5F), level(1.5F)});
+  return LocalMaps({level(0.25F), level(0.5F), level(1.5F)});
+}
+
+LocalMaps map_of(const std::vector<Eigen::Vector3d>& points, const Pose& T_odom_room) {
+  LocalMaps maps = empty_maps();
   std::vector<LocalMaps::Point> of_map;
   of_map.reserve(points.size());
   for (const Eigen::Vector3d& p : points) {
@@ -84,6 +89,36 @@ TEST(Solver, FindsTheMotionWithinAScan) {
   EXPECT_LT(error.translation_m.norm(), 0.01);
   EXPECT_LT(so3_log(error.rotation).norm(), 0.005);
   EXPECT_LT((found.trajectory.end_twist().linear_mps - twist.linear_mps).norm(), 0.3);
+}
+
+/// A room whose front wall was seen from the next room only, where its face is so much farther.
+LocalMaps map_with_wall_from_behind(double wall_m) {
+  LocalMaps maps = empty_maps();
+  std::vector<LocalMaps::Point> of_map;
+  for (Eigen::Vector3d p : room(1, 60000)) {
+    Eigen::Vector3f ray = p.cast<float>().normalized();
+    if (p.x() == kFront_m) {
+      ray = {-1.0F, 0.0F, 0.0F};
+      p.x() += wall_m;
+    }
+    of_map.push_back({p, Eigen::Vector3f::Zero(), FeatureKind::structure, ray});
+  }
+  maps.insert(of_map, LocalMaps::kWhole);
+  return maps;
+}
+
+// The back wall alone holds the sensor then. With both, it is half of the wall's width off.
+TEST(Solver, MatchesAWallFromTheSideThatWasSeen) {
+  constexpr double kWidth_m = 0.1;
+  LocalMaps maps = map_with_wall_from_behind(kWidth_m);
+  const std::vector<Feature> scan = scan_of(room(2, 3000), {}, {});
+  Solver solver({.max_iterations = 20, .structure_kernel = 100.0F}, scan.size());
+  const auto found = [&](Sides sides) {
+    return solver.solve(scan, maps, loose_prior({}), LocalMaps::kWhole, sides);
+  };
+  EXPECT_NEAR(found(Sides::seen).trajectory.at(0.5).translation_m.x(), 0.0, 0.005);
+  EXPECT_NEAR(found(Sides::both).trajectory.at(0.5).translation_m.x(), 0.5 * kWidth_m, 0.01);
+  EXPECT_LT(found(Sides::seen).matched, found(Sides::both).matched);
 }
 
 /// The distance of a wall ahead, which lies on no border of cells either.
