@@ -163,8 +163,9 @@ void CellMap::fit(Cell& cell) const {
     const float weight = std::max(0.0F, 1.0F / variance - 1.0F / (thin_m * thin_m));
     cell.information += weight * outer(solver.eigenvectors().col(k));
   }
-  if (config_.one_sided)
+  if (config_.one_sided) {
     cell.inwards = direction_of(matrix_of(cell.information) * rays_around(neighbours));
+  }
 }
 
 void CellMap::clear() {

@@ -30,7 +30,7 @@ struct CellMapConfig {
   /// ground was seen. The end of a strip, at a wall or at one ring, moves with the sensor and would
   /// hold the sensor in place; the foot of the wall would make it a slope.
   bool level = false;
-  /// Whether a surface is matched from the side only from which it was seen. The two faces of a
+  /// Whether a surface is matched only from the side from which it was seen. The two faces of a
   /// thin wall lie in one cell, and a sensor that comes through the door sees the other one.
   bool one_sided = false;
   /// Whether the sensitivities of the points are averaged as well.
@@ -171,7 +171,7 @@ class CellMap {
     std::uint32_t refit_at = 0;                        // keyframe from which the fit is out of date
     Eigen::Vector3f mean_m = Eigen::Vector3f::Zero();  // from the cell's centre
     Symmetric information = Symmetric::Zero();         // zero: too few points
-    std::array<std::int16_t, 3> inwards{};  // into the surface; only its direction counts
+    std::array<std::int16_t, 3> inwards{};  // into the surface, of any length; zero: not known
   };
   struct Neighbour {
     std::int32_t at;

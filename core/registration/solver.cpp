@@ -57,13 +57,13 @@ std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t fi
     one.cached = &cached_cells_[k];
     one.turned_m = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
     one.point_m = one.turned_m.cast<double>() + sampled_.origin_m(f.s);
-    one.ray = sides_ == Sides::seen ? one.turned_m : Eigen::Vector3f::Zero();
   }
   return n;
 }
 
 /// Where a level has no distribution, the next coarser one is used.
-void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest) {
+void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest,
+                   Sides sides) {
   std::array<Correspondence*, kAtATime> unmatched;
   std::size_t n = 0;
   for (Correspondence& one : some) unmatched[n++] = &one;
@@ -79,7 +79,9 @@ void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t 
     }
     n = 0;
     for (Correspondence* one : left) {
-      one->match = maps.at(level, one->feature->kind).match(one->cell, one->point_m, one->ray);
+      Eigen::Vector3f ray = Eigen::Vector3f::Zero();
+      if (sides == Sides::seen) ray = one->turned_m;
+      one->match = maps.at(level, one->feature->kind).match(one->cell, one->point_m, ray);
       if (one->match.information == nullptr) unmatched[n++] = one;
     }
   }
@@ -118,7 +120,7 @@ Solver::Sums Solver::accumulate(const std::vector<Feature>& features, std::size_
     n = look_up(features, k, stride);
     solution.looked_up += static_cast<int>(n);
     const std::span some = std::span(correspondences_).first(n);
-    match(some, maps, finest);
+    match(some, maps, finest, sides_);
     for (const Correspondence& one : some) {
       if (one.match.information == nullptr) continue;
       ++solution.matched;

@@ -52,7 +52,7 @@ using ResidualSums = Eigen::Matrix<double, 6 + 9 + 6 + 6, 1>;
 /// Which sides of the map's surfaces a scan may be matched with.
 enum class Sides {
   seen,  ///< those from which they were seen
-  both   ///< thin walls may be off by their width
+  both   ///< the other ones, too: a thin wall may then be off by its width
 };
 
 /// Aligns features with the maps. Keeps its working memory between calls.
@@ -80,7 +80,6 @@ class Solver {
     LocalMaps::PerLevel* cached = nullptr;  // its cells in the step before
     Eigen::Vector3f turned_m;               // in the odometry's axes, from the sensor
     Eigen::Vector3d point_m;                // in the odometry's frame
-    Eigen::Vector3f ray;                    // from the sensor; zero: both sides are matched
     CellMap::CellKey key;
     std::int32_t cell = CellMap::kNone;
     std::size_t level = 0;  // of the cell
@@ -105,7 +104,8 @@ class Solver {
   Sums accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
                   std::size_t finest, Solution& solution);
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);
-  static void match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest);
+  static void match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest,
+                    Sides sides);
   void add_beam_residual(const Correspondence& one, LocalMaps& maps, BeamEquations& sums) const;
   void add_residual(const Correspondence& one, float kernel_scale, float data_weight, Sums& sums);
   Vector6d design_effect(const Unknowns& step, const Prior& prior) const;

@@ -21,12 +21,11 @@ BeamEquations Solver::beam_equations(const std::vector<Feature>& features, Local
                                      const Trajectory& trajectory) {
   BeamEquations sums;
   sample(trajectory, sampled_);
-  sides_ = Sides::seen;
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
   for (std::size_t k = 0, n = 0; k < features.size(); k += n * calibration::kStride) {
     n = look_up(features, k, calibration::kStride);
     const std::span some = std::span(correspondences_).first(n);
-    match(some, maps, LocalMaps::kWhole);
+    match(some, maps, LocalMaps::kWhole, Sides::seen);
     for (const Correspondence& one : some) {
       if (one.match.information != nullptr) add_beam_residual(one, maps, sums);
     }

@@ -77,7 +77,6 @@ class Tracker {
   void begin_map();
   [[nodiscard]] bool is_first() const { return initializer_.scans() == 1; }
   Prior begin_scan(const std::vector<Feature>& features);
-  [[nodiscard]] Prior prior_of_alignment(Prior predicted) const;
   Solution align_from_prediction(const Prior& prior);
   std::optional<Solution> solve(const Prior& predicted);
   std::optional<Solution> relocalize(const Solution& at_prediction, const Prior& prior);

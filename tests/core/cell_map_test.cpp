@@ -40,7 +40,7 @@ TEST_F(Filled, AWallInformsAlongItsNormalOnly) {
 }
 
 // A wall of a room is seen again in the next room, from the other side and by its width nearer.
-TEST_F(Filled, AWallIsMatchedFromTheSideOnlyThatWasSeen) {
+TEST_F(Filled, AWallIsMatchedOnlyFromTheSideItWasSeenFrom) {
   CellMap walls({.one_sided = true});
   for (int k = 0; k < 4000; ++k) {
     const Eigen::Vector3d on_wall(5.0, uniform(-3, 3), uniform(-3, 3));

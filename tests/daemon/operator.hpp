@@ -23,10 +23,9 @@ class Operator : public testing::Test {
   [[nodiscard]] Finished run(const std::vector<std::string>& command) const {
     return run_to_end(words(command));
   }
-  /// Until the daemon tracks and has nothing to complain of, or not. A round room hardly tells the
-  /// yaw, so that most scans are `degraded`: one in which it tracks took up to 44 s to come.
+  /// Until the daemon tracks and has nothing to complain of, or not.
   [[nodiscard]] bool becomes_good() const {
-    const auto deadline = std::chrono::steady_clock::now() + seconds(240);
+    const auto deadline = std::chrono::steady_clock::now() + seconds(60);
     while (std::chrono::steady_clock::now() < deadline) {
       if (run({"status"}).exit_code == 0) return true;
       std::this_thread::sleep_for(milliseconds(200));
