@@ -61,7 +61,7 @@ class TakenSource : public PacketSource {
   std::uint64_t allocations_when_warm = 0;
 
  private:
-  RoundRoomSource source_;
+  RoomSource source_;
   std::uint64_t warm_at_, read_ = 0;
   ScanRing& scans_;
   PacketRing& copies_;
@@ -150,7 +150,7 @@ class SteadySource : public PacketSource {
   [[nodiscard]] SourceCounts counts() const override { return source_.counts(); }
 
  private:
-  RoundRoomSource source_{1'000'000};
+  RoomSource source_{1'000'000};
 };
 
 // What the publisher does by itself: poses in the robot's frame, health, metrics, the record.

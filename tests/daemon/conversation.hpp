@@ -67,13 +67,13 @@ inline json ask(UdpSocket& client, const Lilod& lilod, const std::string& reques
   return next_of_kind(client, kind).value_or(json());
 }
 
-/// A VLP-16 in a round room. Its clock goes on from turn to turn.
+/// A VLP-16 in a room. Its clock goes on from turn to turn.
 class Sensor {
  public:
   /// Three times as fast as life, or slower than life under a sanitizer, whatever the daemon does.
   void turn(const Lilod& lilod, double turns) {
     PacketView packet;
-    for (double sent = 0.0; sent < turns * RoundRoomSource::kPacketsPerTurn; sent += 1.0) {
+    for (double sent = 0.0; sent < turns * RoomSource::kPacketsPerTurn; sent += 1.0) {
       source_.read(packet, milliseconds(0));
       const auto* bytes = reinterpret_cast<const char*>(packet.payload.data());
       socket_.send_to(lilod.data_port(), std::string(bytes, packet.payload.size()));
@@ -89,7 +89,8 @@ class Sensor {
       last_pose_ = last_pose_ ? next_pose(lilod) : pose_now(lilod);
     }
   }
-  void be_in_a_room_of(unsigned radius_m) { source_.be_in_a_room_of(radius_m); }
+  void be_in_a_room_of(double radius_m) { source_.be_in_a_room_of(radius_m); }
+  void be_in_a_square_room() { source_.be_in_a_square_room(); }
 
  private:
   /// As the daemon answers; the same text until it has another pose.
@@ -108,17 +109,18 @@ class Sensor {
     return pose;
   }
 
-  RoundRoomSource source_{1'000'000};
+  RoomSource source_{1'000'000};
   UdpSocket socket_, asks_;
   std::optional<std::string> last_pose_;  ///< nothing before the first turn
 };
 
-/// Turns the sensor in step with the daemon until the object goes.
+/// Turns the sensor in a square room, in step with the daemon, until the object goes.
 class Turning {
  public:
   explicit Turning(const Lilod& lilod)
       : thread_([this, &lilod] {
           Sensor sensor;
+          sensor.be_in_a_square_room();
           while (!stop_) sensor.turn_in_step(lilod, 1);
         }) {}
   ~Turning() {

@@ -124,7 +124,7 @@ TEST(Doctor, SeesASensorOnTheWire) {
   const std::uint16_t port = free_udp_port();
   const TemporaryFile config("doctor.yaml", yaml(port));
   ChildProcess doctor({kLilo, "doctor", config.path(), "--json"});
-  RoundRoomSource source(1'000'000);
+  RoomSource source(1'000'000);
   const UdpSocket socket;
   for (std::optional<int> code; !code; code = doctor.wait(milliseconds(5))) {
     PacketView packet;

@@ -22,8 +22,8 @@ const SensorConfig kVlp16{.model = SensorModel::vlp16};
 
 /// Packets for `turns` whole revolutions and a little.
 std::unique_ptr<PacketSource> turns(int turns) {
-  const double packets = RoundRoomSource::kPacketsPerTurn * (turns + 0.5);
-  return std::make_unique<RoundRoomSource>(static_cast<std::uint64_t>(packets));
+  const double packets = RoomSource::kPacketsPerTurn * (turns + 0.5);
+  return std::make_unique<RoomSource>(static_cast<std::uint64_t>(packets));
 }
 
 /// The scans of a source, with their returns, as profile paper asks for them.
@@ -172,7 +172,7 @@ TEST(Receiver, GoesOnWithTheNewestScan) {
       scans.release();
     }
   };
-  const auto at = static_cast<std::uint64_t>(6.5 * RoundRoomSource::kPacketsPerTurn);
+  const auto at = static_cast<std::uint64_t>(6.5 * RoomSource::kPacketsPerTurn);
   Receiver receiver(std::make_unique<InterruptedSource>(turns(9), at, take_all), kVlp16, {}, scans,
                     ready, counters);
   receiver.run();
@@ -239,12 +239,11 @@ TEST(Receiver, CopiesPacketsForThoseWhoRecord) {
     Wakeup ready(Wakeup::Mode::blocking);
     PipelineCounters counters;
     counters.packets_asked = true;
-    Receiver(std::make_unique<RoundRoomSource>(kPackets), kVlp16, {}, scans, ready, counters,
-             &packets)
+    Receiver(std::make_unique<RoomSource>(kPackets), kVlp16, {}, scans, ready, counters, &packets)
         .run();
     ASSERT_EQ(packets.size(), std::min<std::size_t>(slots, kPackets));
     EXPECT_EQ(counters.packets_dropped, kPackets - packets.size());
-    RoundRoomSource sent(kPackets);
+    RoomSource sent(kPackets);
     for (std::uint64_t seq = 0; const PacketDatagram* datagram = packets.front(); ++seq) {
       const auto message = read_packet(datagram->view());
       PacketView expected;
@@ -263,8 +262,7 @@ TEST(Receiver, CopiesNoPacketsUnlessAsked) {
   PacketRing packets(128);
   Wakeup ready(Wakeup::Mode::blocking);
   PipelineCounters counters;
-  Receiver(std::make_unique<RoundRoomSource>(100), kVlp16, {}, scans, ready, counters, &packets)
-      .run();
+  Receiver(std::make_unique<RoomSource>(100), kVlp16, {}, scans, ready, counters, &packets).run();
   EXPECT_EQ(packets.size(), 0U);
   EXPECT_EQ(counters.packets_dropped, 0U);
 }

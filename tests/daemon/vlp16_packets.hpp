@@ -3,19 +3,22 @@
 
 #include "drivers/packet_source.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 
 namespace lilo {
 
-/// A VLP-16 at 600 rpm in the middle of a round room of 10 m, as its manual says it sends (63-9243,
-/// section 9): 12 blocks of two firing sequences, 55.296 us each, azimuth in hundredths of a
-/// degree. Ends after `packets`.
-class RoundRoomSource : public PacketSource {
+/// A VLP-16 at 600 rpm in the middle of a room, as its manual says it sends (63-9243, section 9):
+/// 12 blocks of two firing sequences, 55.296 us each, azimuth in hundredths of a degree. Ends after
+/// `packets`. The room is a sphere of 10 m, in which no rotation can be seen, until it is told
+/// otherwise.
+class RoomSource : public PacketSource {
  public:
-  explicit RoundRoomSource(std::uint64_t packets) : packets_(packets) {}
+  explicit RoomSource(std::uint64_t packets) : packets_(packets) {}
 
   ReadResult read(PacketView& packet, std::chrono::milliseconds) override {
     if (sent_ == packets_) return ReadResult::end;
@@ -29,7 +32,9 @@ class RoundRoomSource : public PacketSource {
   }
   [[nodiscard]] SourceCounts counts() const override { return {.packets = sent_}; }
   /// From now on another room.
-  void be_in_a_room_of(unsigned radius_m) { radius_m_ = radius_m; }
+  void be_in_a_room_of(double radius_m) { radius_m_ = radius_m; }
+  /// From now on a room of four walls, the floor 1.5 m below the sensor, the ceiling 2.5 m above.
+  void be_in_a_square_room() { is_square_ = true; }
 
   static constexpr double kPacketsPerTurn = 0.1e9 / (24 * 55296.0);
 
@@ -45,6 +50,28 @@ class RoundRoomSource : public PacketSource {
     bytes_[at + 1] = static_cast<std::byte>(value >> 8U & 0xffU);
   }
 
+  /// In steps of 2 mm. The lasers fire 2.304 us apart. Those of even numbers look from -15 degrees
+  /// up in steps of two, those of odd numbers from 1 degree.
+  [[nodiscard]] unsigned distance_of(std::size_t channel, double block_ns) const {
+    const std::size_t laser = channel % 16;
+    const double fired_ns =
+        block_ns + (channel < 16 ? 0.0 : 55296.0) + 2304.0 * static_cast<double>(laser);
+    const double elevation_deg = static_cast<double>(laser) - (laser % 2 == 0 ? 15.0 : 0.0);
+    const double azimuth_rad = std::fmod(fired_ns / 0.1e9, 1.0) * 2.0 * std::numbers::pi;
+    const double range = range_m(azimuth_rad, elevation_deg * std::numbers::pi / 180.0);
+    return static_cast<unsigned>(std::lround(500.0 * range));
+  }
+
+  /// To the nearest wall, floor or ceiling.
+  [[nodiscard]] double range_m(double azimuth_rad, double elevation_rad) const {
+    if (!is_square_) return radius_m_;
+    const double across =
+        std::max(std::abs(std::cos(azimuth_rad)), std::abs(std::sin(azimuth_rad)));
+    const double up = std::sin(elevation_rad);
+    const double to_wall_m = radius_m_ / (across * std::cos(elevation_rad));
+    return std::min(to_wall_m, up < 0.0 ? 1.5 / -up : 2.5 / up);
+  }
+
   void write(std::uint64_t packet) {
     for (std::size_t block = 0; block < 12; ++block) {
       const double t_ns = stamp_ns(packet) + static_cast<double>(block) * 2 * 55296.0;
@@ -52,7 +79,7 @@ class RoundRoomSource : public PacketSource {
       put16(block * 100, 0xeeff);
       put16(block * 100 + 2, static_cast<unsigned>(azimuth));
       for (std::size_t channel = 0; channel < 32; ++channel) {
-        put16(block * 100 + 4 + channel * 3, radius_m_ * 1000 / 2);  // in steps of 2 mm
+        put16(block * 100 + 4 + channel * 3, distance_of(channel, t_ns));
         bytes_[block * 100 + 6 + channel * 3] = std::byte{50};
       }
     }
@@ -66,7 +93,8 @@ class RoundRoomSource : public PacketSource {
 
   std::uint64_t packets_;
   std::uint64_t sent_ = 0;
-  unsigned radius_m_ = 10;
+  double radius_m_ = 10.0;
+  bool is_square_ = false;
   std::array<std::byte, 1206> bytes_{};
 };
 

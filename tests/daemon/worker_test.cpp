@@ -17,8 +17,8 @@ namespace {
 class WorkerTest : public testing::Test {
  protected:
   WorkerTest() {
-    const auto packets = static_cast<std::uint64_t>(RoundRoomSource::kPacketsPerTurn * 7.5);
-    Receiver(std::make_unique<RoundRoomSource>(packets), {.model = SensorModel::vlp16}, {}, scans_,
+    const auto packets = static_cast<std::uint64_t>(RoomSource::kPacketsPerTurn * 7.5);
+    Receiver(std::make_unique<RoomSource>(packets), {.model = SensorModel::vlp16}, {}, scans_,
              scan_ready_, counters_)
         .run();
     counters_.behind = false;
@@ -139,14 +139,14 @@ class ReceiverAndWorker : public testing::TestWithParam<std::size_t> {};
 
 // Whatever was dropped on the way, the poses are those that one thread makes of the same scans.
 TEST_P(ReceiverAndWorker, MakeThePosesOfOneThread) {
-  constexpr auto kPackets = static_cast<std::uint64_t>(RoundRoomSource::kPacketsPerTurn * 20.5);
+  constexpr auto kPackets = static_cast<std::uint64_t>(RoomSource::kPacketsPerTurn * 20.5);
   const SensorConfig sensor{.model = SensorModel::vlp16};
   Wakeup scan_ready(Wakeup::Mode::blocking), report_ready(Wakeup::Mode::polled);
 
   PipelineCounters counters;
   ScanRing scans(GetParam());
   ReportRing reports(32);
-  Receiver receiver(std::make_unique<RoundRoomSource>(kPackets), sensor, {}, scans, scan_ready,
+  Receiver receiver(std::make_unique<RoomSource>(kPackets), sensor, {}, scans, scan_ready,
                     counters);
   PointsRing points(4);
   Worker worker({}, {}, scans, scan_ready, reports, {points, 0, 0}, report_ready, counters);
@@ -162,8 +162,7 @@ TEST_P(ReceiverAndWorker, MakeThePosesOfOneThread) {
 
   PipelineCounters all_counters;
   ScanRing all(32);
-  Receiver(std::make_unique<RoundRoomSource>(kPackets), sensor, {}, all, scan_ready, all_counters)
-      .run();
+  Receiver(std::make_unique<RoomSource>(kPackets), sensor, {}, all, scan_ready, all_counters).run();
   Odometry odometry{OdometryConfig{}};
   std::size_t poses = 0;
   for (const PoseReport* report = reports.front(); report != nullptr; report = reports.front()) {
