@@ -146,7 +146,8 @@ void CellMap::fit(Cell& cell) const {
   const auto neighbours = std::span(around).first(neighbours_of(cell.index, around));
   const Moments sums = moments_around(neighbours);
   const float count = count_of(sums);
-  if (count < map::kMinPoints) return;
+  cell.is_known = count >= map::kMinPoints;
+  if (!cell.is_known) return;
   cell.mean_m = points_of(sums) / count;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(matrix_of<float>(squares_of(sums) / count - outer(cell.mean_m)));

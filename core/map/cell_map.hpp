@@ -19,7 +19,9 @@ namespace lilo::core {
 /// What the map tells of a point.
 struct Match {
   Eigen::Vector3f from_mean_m;             ///< from the mean of the map points around it
-  const Symmetric* information = nullptr;  ///< 1/m^2; nullptr: the map knows too little there
+  const Symmetric* information = nullptr;  ///< 1/m^2; nullptr: the map tells nothing there
+  /// Whether there are enough points: if they tell nothing, they are thick or a strip of ground.
+  bool is_known = false;
 };
 
 struct CellMapConfig {
@@ -106,8 +108,11 @@ class CellMap {
     if (at == kNone) return {};
     Cell& cell = cells_[static_cast<std::size_t>(at)];
     if (keyframe_ >= cell.refit_at) fit(cell);
-    if (cell.information.isZero(0.0F) || is_behind(cell, ray)) return {};
-    return {(point_m - center_of(cell.index)).cast<float>() - cell.mean_m, &cell.information};
+    if (cell.information.isZero(0.0F)) return {.from_mean_m = {}, .is_known = cell.is_known};
+    if (is_behind(cell, ray)) return {};
+    return {.from_mean_m = (point_m - center_of(cell.index)).cast<float>() - cell.mean_m,
+            .information = &cell.information,
+            .is_known = true};
   }
   /// Mean of the points that match() answers with: all those around. Zero without sensitivities.
   [[nodiscard]] Sensitivity sensitivity_around(std::int32_t at) const;
@@ -170,8 +175,9 @@ class CellMap {
     std::uint32_t born = 0;                            // keyframe
     std::uint32_t refit_at = 0;                        // keyframe from which the fit is out of date
     Eigen::Vector3f mean_m = Eigen::Vector3f::Zero();  // from the cell's centre
-    Symmetric information = Symmetric::Zero();         // zero: too few points
+    Symmetric information = Symmetric::Zero();         // zero: it tells nothing
     std::array<std::int16_t, 3> inwards{};  // into the surface, of any length; zero: not known
+    bool is_known = false;                  // there are enough points
   };
   struct Neighbour {
     std::int32_t at;

@@ -14,8 +14,14 @@
 
 namespace lilo::core {
 
-/// The local map: cells of several sizes, of ground and of structure apart. A feature is matched at
-/// the finest level that knows enough of its surroundings.
+/// The levels of the map at which a feature is matched: at the first one that gives information.
+enum class Levels : std::uint8_t {
+  from_whole,  ///< whole cells, then coarse ones
+  from_half,   ///< half cells, then whole ones, then coarse ones
+  first_known  ///< the same, but the first one with enough points decides, also if it gives none
+};
+
+/// The local map: cells of several sizes, of ground and of structure apart.
 ///
 /// Memory is reserved at construction. Not thread-safe.
 class LocalMaps {
@@ -25,6 +31,9 @@ class LocalMaps {
   static constexpr std::size_t kLevels = 3;
   static constexpr std::size_t kHalf = 0, kWhole = 1, kCoarse = 2;
   using PerLevel = std::array<std::int32_t, kLevels>;
+  static constexpr std::size_t finest_of(Levels levels) {
+    return levels == Levels::from_whole ? kWhole : kHalf;
+  }
   static constexpr PerLevel kNoCells{CellMap::kNone, CellMap::kNone, CellMap::kNone};
 
   /// `configs`: of each level the ground map, then the structure map.

@@ -61,12 +61,11 @@ std::size_t Solver::look_up(const std::vector<Feature>& features, std::size_t fi
   return n;
 }
 
-/// Where a level has no distribution, the next coarser one is used.
-void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest,
-                   Sides sides) {
+void Solver::match(std::span<Correspondence> some, LocalMaps& maps, Levels levels, Sides sides) {
   std::array<Correspondence*, kAtATime> unmatched;
   std::size_t n = 0;
   for (Correspondence& one : some) unmatched[n++] = &one;
+  const std::size_t finest = LocalMaps::finest_of(levels);
   for (std::size_t level = finest; level < LocalMaps::kLevels && n > 0; ++level) {
     const auto left = std::span(unmatched).first(n);
     for (Correspondence* one : left) {
@@ -82,7 +81,8 @@ void Solver::match(std::span<Correspondence> some, LocalMaps& maps, std::size_t 
       Eigen::Vector3f ray = Eigen::Vector3f::Zero();
       if (sides == Sides::seen) ray = one->turned_m;
       one->match = maps.at(level, one->feature->kind).match(one->cell, one->point_m, ray);
-      if (one->match.information == nullptr) unmatched[n++] = one;
+      const bool is_decided = levels == Levels::first_known && one->match.is_known;
+      if (one->match.information == nullptr && !is_decided) unmatched[n++] = one;
     }
   }
 }
@@ -95,7 +95,7 @@ void Solver::weigh_by_height(const std::vector<Feature>& features, LocalMaps& ma
   height_weights_ = {};
   if (prior.twist.linear_mps.norm() > registration::kMaxJamSpeed_mps) return;
   const Sums sums =
-      accumulate(features, registration::kFarStride, maps, LocalMaps::kWhole, solution);
+      accumulate(features, registration::kFarStride, maps, Levels::from_whole, solution);
   const double all = sums.low + sums.tall;
   if (!(all > 0.0)) return;
   const auto low = static_cast<float>(
@@ -109,7 +109,7 @@ float Solver::weight_by_height(const Feature& f) const {
 }
 
 Solver::Sums Solver::accumulate(const std::vector<Feature>& features, std::size_t stride,
-                                LocalMaps& maps, std::size_t finest, Solution& solution) {
+                                LocalMaps& maps, Levels levels, Solution& solution) {
   sample(solution.trajectory, sampled_);
   for (ResidualSums& bin : bins_) bin.setZero();
   Sums sums;
@@ -120,7 +120,7 @@ Solver::Sums Solver::accumulate(const std::vector<Feature>& features, std::size_
     n = look_up(features, k, stride);
     solution.looked_up += static_cast<int>(n);
     const std::span some = std::span(correspondences_).first(n);
-    match(some, maps, finest, sides_);
+    match(some, maps, levels, sides_);
     for (const Correspondence& one : some) {
       if (one.match.information == nullptr) continue;
       ++solution.matched;
@@ -217,7 +217,7 @@ Solution Solver::unaligned(const Prior& prior) const {
 }
 
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
-                       std::size_t finest, Sides sides) {
+                       Levels levels, Sides sides) {
   sides_ = sides;
   // Far from the solution residuals are larger than noise and what moves: a wide kernel first, then
   // the tight one (graduated non-convexity; Yang et al., RA-L 2020). And a part of the features
@@ -229,7 +229,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
   weigh_by_height(features, maps, prior, solution);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
-    accumulate(features, stride, maps, stride == 1 ? finest : LocalMaps::kWhole, solution);
+    accumulate(features, stride, maps, stride == 1 ? levels : Levels::from_whole, solution);
     Equations data = data_equations(prior, solution.data_information);
     const Unknowns x = solution.trajectory.knots;
     auto& [H, b] = data;

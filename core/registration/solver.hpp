@@ -64,9 +64,9 @@ class Solver {
   }
   /// The prediction as a solution in which nothing matched.
   [[nodiscard]] Solution unaligned(const Prior& prior) const;
-  /// `finest`: the finest level of the maps, used once the solution is near.
+  /// `levels`: of the maps, used once the solution is near.
   Solution solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
-                 std::size_t finest = LocalMaps::kWhole, Sides sides = Sides::seen);
+                 Levels levels = Levels::from_whole, Sides sides = Sides::seen);
 
   /// What the residuals of a solution say of the beams. The map is as it was for solve().
   BeamEquations beam_equations(const std::vector<Feature>& features, LocalMaps& maps,
@@ -102,10 +102,9 @@ class Solver {
                        Solution& solution);
   [[nodiscard]] float weight_by_height(const Feature& f) const;
   Sums accumulate(const std::vector<Feature>& features, std::size_t stride, LocalMaps& maps,
-                  std::size_t finest, Solution& solution);
+                  Levels levels, Solution& solution);
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);
-  static void match(std::span<Correspondence> some, LocalMaps& maps, std::size_t finest,
-                    Sides sides);
+  static void match(std::span<Correspondence> some, LocalMaps& maps, Levels levels, Sides sides);
   void add_beam_residual(const Correspondence& one, LocalMaps& maps, BeamEquations& sums) const;
   void add_residual(const Correspondence& one, float kernel_scale, float data_weight, Sums& sums);
   Vector6d design_effect(const Unknowns& step, const Prior& prior) const;

@@ -25,7 +25,7 @@ BeamEquations Solver::beam_equations(const std::vector<Feature>& features, Local
   for (std::size_t k = 0, n = 0; k < features.size(); k += n * calibration::kStride) {
     n = look_up(features, k, calibration::kStride);
     const std::span some = std::span(correspondences_).first(n);
-    match(some, maps, LocalMaps::kWhole, Sides::seen);
+    match(some, maps, Levels::from_whole, Sides::seen);
     for (const Correspondence& one : some) {
       if (one.match.information != nullptr) add_beam_residual(one, maps, sums);
     }

@@ -45,7 +45,7 @@ bool Initializer::must_begin_again(const ScanTiming& scan, std::size_t feature_c
 bool Initializer::add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
                       LocalOdometry& local) {
   Remembered& one = scans_[count_++];
-  one.finest_level = scan.finest_level;
+  one.levels = scan.levels;
   one.timing = scan.timing;
   one.feature_count = all.size();
   thin_out(all, most_for_map_, Evenly::in_image, one.for_map, scan.is_room);
@@ -105,7 +105,7 @@ Solution Initializer::try_start(const Start& start, LocalOdometry& local) {
   first.T_begin = moved({}, start.twist, first.span_s).inverse();
   first.knots = Unknowns::Zero(Eigen::Index{kKnotSize} * (first.segments + 1));
   note_track(0, first.T_begin, {});
-  local.begin_map_of(scans_[0].for_map, first, scans_[0].finest_level);
+  local.begin_map_of(scans_[0].for_map, first, LocalMaps::finest_of(scans_[0].levels));
   prior.twist = start.twist;
   prior.T_begin = moved({}, start.twist, since_first_s(1) - prior.span_s);
   // The prior of the velocity stays that of the first round.
@@ -160,7 +160,7 @@ void Initializer::replay(Start start, LocalOdometry& local) {
     note_track(k, solution.trajectory.at(0.0), solution.trajectory.end());
     const Observation scan{.timing = scans_[k].timing,
                            .is_room = true,  // outside rooms, for_map has nothing overhead
-                           .finest_level = scans_[k].finest_level};
+                           .levels = scans_[k].levels};
     local.grow_map(scan, scans_[k].for_map, solution, MapUse::keyframe);
   }
 }

@@ -29,7 +29,7 @@ struct AlignedScan {
   const Solution& solution;
   Pose T_odom_sensor;  ///< of its last firing
   MapUse use = MapUse::keyframe;
-  std::size_t finest_level = LocalMaps::kWhole;  ///< as in Observation
+  std::size_t finest_level = LocalMaps::kWhole;  ///< into which its points enter
   bool with_overhead = true;                     ///< features that are is_overhead() enter too
   PoseSensitivity sensitivity = PoseSensitivity::Zero();  ///< of its pose
 };

@@ -33,13 +33,13 @@ LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_featu
       least_segments_(config.segments) {}
 
 Solution LocalOdometry::align_checked(const std::vector<Feature>& features, const Prior& prior,
-                                      std::size_t finest_level, Sides sides) {
+                                      Levels levels, Sides sides) {
   const double exceptional = tracking::kExceptionalSigmas * tracking::kExceptionalSigmas;
-  Solution found = align(features, prior, finest_level, sides);
+  Solution found = align(features, prior, levels, sides);
   if (normalised_innovation(prior, found.trajectory.knots).maxCoeff() < exceptional) return found;
   Prior usual_prior = prior;
   usual_prior.has_heavy_tails = false;
-  Solution usual = align(features, usual_prior, finest_level, sides);
+  Solution usual = align(features, usual_prior, levels, sides);
   return is_significant(found.inliers, usual.inliers, search::kDropSigmas) ? found : usual;
 }
 
@@ -75,8 +75,8 @@ void LocalOdometry::observe_noise(const ScanTiming& scan, const Solution& soluti
 void LocalOdometry::grow_map(const Observation& scan, const std::vector<Feature>& features,
                              const Solution& solution, MapUse use,
                              const PoseSensitivity& sensitivity) {
-  if (map_.grow({scan.timing, features, solution, state_.T_odom_sensor, use, scan.finest_level,
-                 scan.is_room, sensitivity})) {
+  if (map_.grow({scan.timing, features, solution, state_.T_odom_sensor, use,
+                 LocalMaps::finest_of(scan.levels), scan.is_room, sensitivity})) {
     uncertainty_.add_keyframe(state_, map_.keyframes());
   }
 }

@@ -33,16 +33,16 @@ class LocalOdometry {
   [[nodiscard]] Prior predict(const ScanTiming& scan) const {
     return core::predict(state_, scan, process_noise_.density(), least_segments_);
   }
-  /// `finest_level`, `sides`: as in Solver::solve().
+  /// `levels`, `sides`: as in Solver::solve().
   Solution align(const std::vector<Feature>& features, const Prior& prior,
-                 std::size_t finest_level = LocalMaps::kWhole, Sides sides = Sides::seen) {
-    return solver_.solve(features, map_.cells(), prior, finest_level, sides);
+                 Levels levels = Levels::from_whole, Sides sides = Sides::seen) {
+    return solver_.solve(features, map_.cells(), prior, levels, sides);
   }
   /// The same, but takes an exceptional motion only if it fits significantly better than a usual
   /// one. Where little of a scan matches, the heavy tails of the prior let it jump to a place that
   /// looks alike.
-  Solution align_checked(const std::vector<Feature>& features, const Prior& prior,
-                         std::size_t finest_level, Sides sides = Sides::seen);
+  Solution align_checked(const std::vector<Feature>& features, const Prior& prior, Levels levels,
+                         Sides sides = Sides::seen);
   /// The prediction as a solution in which nothing matched.
   [[nodiscard]] Solution unaligned(const Prior& prior) const { return solver_.unaligned(prior); }
 

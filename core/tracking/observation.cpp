@@ -2,7 +2,6 @@
 #include "core/tracking/observation.hpp"
 
 #include "core/constants.hpp"
-#include "core/map/local_maps.hpp"
 
 #include <algorithm>
 
@@ -32,7 +31,7 @@ Observation observe(const Scan& scan, const std::vector<Feature>& selected) {
           .features = &selected,
           .structure = static_cast<double>(structure),
           .is_room = in_room,
-          .finest_level = in_room ? LocalMaps::kHalf : LocalMaps::kWhole,
+          .levels = in_room ? Levels::first_known : Levels::from_whole,
           .is_complete = scan.complete};
 }
 

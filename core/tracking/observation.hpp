@@ -3,10 +3,10 @@
 
 #include "core/constants.hpp"
 #include "core/feature.hpp"
+#include "core/map/local_maps.hpp"
 #include "core/motion/scan_timing.hpp"
 #include "core/scan.hpp"
 
-#include <cstddef>
 #include <vector>
 
 namespace lilo::core {
@@ -16,9 +16,11 @@ struct Observation {
   ScanTiming timing;
   const std::vector<Feature>* features = nullptr;  ///< those selected for alignment
   double structure = 0.0;                          ///< how many of them are structure
-  bool is_room = false;          ///< more than half of the structure is near, as in rooms
-  std::size_t finest_level = 0;  ///< of the map: LocalMaps::kHalf in rooms and after a weak scan
-  bool is_complete = false;      ///< Scan::complete
+  bool is_room = false;  ///< more than half of the structure is near, as in rooms
+  /// Of the map. In rooms half cells decide: a whole one takes seats, tables and shelves for one
+  /// piece of rough ground, of which the sensor sees another part as it moves, and rises with it.
+  Levels levels = Levels::from_whole;
+  bool is_complete = false;  ///< Scan::complete
 
   [[nodiscard]] bool says_enough() const { return features->size() >= tracking::kMinFeatures; }
 };

@@ -77,7 +77,7 @@ std::optional<Solution> Relocalizer::find(const Observation& scan, const Prior& 
   Solution& best = *std::max_element(all.begin(), all.end(), fits_less);
   if (!is_unambiguous(best)) return std::nullopt;
   if (!best.converged) {
-    best = local.align(*scan.features, prior_at(best.trajectory.end(), prior), scan.finest_level);
+    best = local.align(*scan.features, prior_at(best.trajectory.end(), prior), scan.levels);
   }
   const bool is_found = best.converged &&
                         best.inliers - best.structure_inliers > tracking::kMinGround &&
@@ -99,7 +99,7 @@ void Relocalizer::attempt_all(const Observation& scan, const Prior& prior,
   attempt_count_ = 1;
   for (const Displacement& by : search_.find(*scan.features, predicted, radius)) {
     const Solution solution =
-        local.align(*scan.features, prior_at(displaced(T_end, by), prior), scan.finest_level);
+        local.align(*scan.features, prior_at(displaced(T_end, by), prior), scan.levels);
     const Pose departed = T_end.inverse() * solution.trajectory.end();
     if (departed.translation_m.norm() < radius.along_m + search::kSamePlace_m &&
         so3_log(departed.rotation).norm() < radius.yaw_rad + search::kSamePlace_rad) {
@@ -148,8 +148,8 @@ std::optional<Solution> Relocalizer::better_turned(const Solution& found, const 
   Solution best = found;
   for (const Displacement& by :
        search_.find(*scan.features, predicted, radius, Onset::within_scan)) {
-    const Solution other = local.align(*scan.features, prior_turned(by, may_begin_elsewhere, prior),
-                                       scan.finest_level);
+    const Solution other =
+        local.align(*scan.features, prior_turned(by, may_begin_elsewhere, prior), scan.levels);
     const double departed_m = (other.trajectory.end().translation_m - place_m).norm();
     if (departed_m < tracking::kFoundPlace_m && fits_less(best, other)) best = other;
   }

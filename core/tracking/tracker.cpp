@@ -52,7 +52,7 @@ Estimate Tracker::align(const Scan& scan, std::vector<Feature>& features, StageH
   scan_ = observe(scan, selection_.choose(features, scan_.is_room));
   // Half cells may give information along a direction that is weak with whole ones: they tell the
   // lamps of a tunnel from its lining.
-  if (alignment_.weak.count > 0) scan_.finest_level = LocalMaps::kHalf;
+  if (alignment_.weak.count > 0 && !scan_.is_room) scan_.levels = Levels::from_half;
   hook(Stage::filter);
   if (session_.is_over) begin_session();
   Prior prior = begin_scan(features);
@@ -130,13 +130,13 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
 /// Where the sensor comes through a wall or out of foliage, it may see nothing that it saw before
 /// but the other sides. They hold the sensor until the map knows more.
 Solution Tracker::align_from_prediction(const Prior& prior) {
-  Solution found = local_.align_checked(*scan_.features, prior, scan_.finest_level);
+  Solution found = local_.align_checked(*scan_.features, prior, scan_.levels);
   if (phase_ == Phase::starting) return found;
   if (!is_lost(found) &&
       history_.fit.relative(found, scan_.structure) > registration::kDoubtfulFit) {
     return found;
   }
-  return local_.align_checked(*scan_.features, prior, scan_.finest_level, Sides::both);
+  return local_.align_checked(*scan_.features, prior, scan_.levels, Sides::both);
 }
 
 /// None where the session is to end.
@@ -145,7 +145,7 @@ std::optional<Solution> Tracker::solve(const Prior& predicted) {
   // must tell.
   if (initializer_.scans() == 2) return initializer_.align_second(session_.restarts == 0, local_);
   if (phase_ == Phase::lost && scan_.says_enough()) {
-    return relocalize(local_.align(*scan_.features, predicted, scan_.finest_level), predicted);
+    return relocalize(local_.align(*scan_.features, predicted, scan_.levels), predicted);
   }
   const Solution found = align_from_prediction(prior_of_alignment(predicted, scan_.is_room));
   if (phase_ == Phase::starting) return found;

@@ -26,7 +26,7 @@ class Start {
       local.accept(scan.timing(), solution);
       initializer.set_track(solution.trajectory.at(0.0), local.state().T_odom_sensor);
     }
-    local.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kWhole}, scan.features(),
+    local.grow_map({.timing = scan.timing(), .levels = Levels::from_whole}, scan.features(),
                    solution, MapUse::keyframe);
     return false;
   }

@@ -104,7 +104,7 @@ TEST_F(LocalOdometryTest, FollowsADriveThroughAYard) {
     const test::ObservedScan scan = in_yard(kSpeed_mps, k);
     const Solution solution = local_.align(scan.features(), local_.predict(scan.timing()));
     local_.accept(scan.timing(), solution);
-    local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kWhole}, scan.features(),
+    local_.grow_map({.timing = scan.timing(), .levels = Levels::from_whole}, scan.features(),
                     solution, MapUse::keyframe);
     const Eigen::Vector3d truth_m(kSpeed_mps * kSpan_s * static_cast<double>(k), 0.0, 0.0);
     EXPECT_NEAR((local_.state().T_odom_sensor.translation_m - truth_m).norm(), 0.0, 0.02) << k;
@@ -178,9 +178,9 @@ TEST_F(LocalOdometryTest, ASensorIsFollowedWhenItSetsOff) {
     };
     const test::ObservedScan scan(test::yard(), path, k);
     const Solution solution =
-        local_.align_checked(scan.features(), local_.predict(scan.timing()), LocalMaps::kWhole);
+        local_.align_checked(scan.features(), local_.predict(scan.timing()), Levels::from_whole);
     local_.accept(scan.timing(), solution);
-    local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kWhole}, scan.features(),
+    local_.grow_map({.timing = scan.timing(), .levels = Levels::from_whole}, scan.features(),
                     solution, MapUse::keyframe);
     const Eigen::Vector3d error_m =
         local_.state().T_odom_sensor.translation_m - path(1.0).translation_m;

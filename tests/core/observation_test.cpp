@@ -47,14 +47,14 @@ TEST(Observation, AHundredFeaturesSayEnough) {
 
 TEST(Observation, IsNarrowWhereMoreThanHalfOfTheStructureIsWithinFiveMetres) {
   std::vector<Feature> features;
-  EXPECT_EQ(observe({}, features).finest_level, LocalMaps::kWhole) << "nothing is seen";
+  EXPECT_EQ(observe({}, features).levels, Levels::from_whole) << "nothing is seen";
   add(features, 50, kNear_m, FeatureKind::structure);
   add(features, 50, kFar_m, FeatureKind::structure);
-  EXPECT_EQ(observe({}, features).finest_level, LocalMaps::kWhole) << "a half";
+  EXPECT_EQ(observe({}, features).levels, Levels::from_whole) << "a half";
   add(features, 1, kNear_m, FeatureKind::structure);
-  EXPECT_EQ(observe({}, features).finest_level, LocalMaps::kHalf);
+  EXPECT_EQ(observe({}, features).levels, Levels::first_known);
   add(features, 2, kFar_m, FeatureKind::structure);
-  EXPECT_EQ(observe({}, features).finest_level, LocalMaps::kWhole);
+  EXPECT_EQ(observe({}, features).levels, Levels::from_whole);
 }
 
 // The ground beside a vehicle is always near.
@@ -62,7 +62,7 @@ TEST(Observation, GroundDoesNotTellHowNarrowItIs) {
   std::vector<Feature> features;
   add(features, 10, kFar_m, FeatureKind::structure);
   add(features, 1000, kNear_m, FeatureKind::ground);
-  EXPECT_EQ(observe({}, features).finest_level, LocalMaps::kWhole);
+  EXPECT_EQ(observe({}, features).levels, Levels::from_whole);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ class RelocalizerTest : public testing::Test {
         history_.fit.learn(solution, scan.observation().structure);
       }
       history_.end_ns = scan.timing().end_ns;
-      local_.grow_map({.timing = scan.timing(), .finest_level = LocalMaps::kWhole}, scan.features(),
+      local_.grow_map({.timing = scan.timing(), .levels = Levels::from_whole}, scan.features(),
                       solution, MapUse::keyframe);
     }
   }

@@ -10,13 +10,12 @@ namespace lilo::core {
 namespace {
 
 constexpr double kSpan_s = 0.1;
-constexpr double kFront_m = 6.1;  // of the room
+constexpr double kFront_m = 6.1, kFloor_m = -1.4, kCeiling_m = 2.6;  // of the room
 
 /// A room of 12 m by 9 m, 4 m high, the sensor in it. No wall lies on the border of cells: its
 /// points would fall into those on one side only.
 std::vector<Eigen::Vector3d> room(unsigned seed, int count) {
-  constexpr double kBack_m = -5.9, kRight_m = -4.1, kLeft_m = 4.9, kFloor_m = -1.4,
-                   kCeiling_m = 2.6;
+  constexpr double kBack_m = -5.9, kRight_m = -4.1, kLeft_m = 4.9;
   std::mt19937 rng(seed);
   std::uniform_real_distribution<double> x(kBack_m, kFront_m), y(kRight_m, kLeft_m),
       z(kFloor_m, kCeiling_m);
@@ -41,14 +40,15 @@ LocalMaps empty_maps() {
   return LocalMaps({level(0.25F), level(0.5F), level(1.5F)});
 }
 
-LocalMaps map_of(const std::vector<Eigen::Vector3d>& points, const Pose& T_odom_room) {
+LocalMaps map_of(const std::vector<Eigen::Vector3d>& points, const Pose& T_odom_room,
+                 std::size_t finest = LocalMaps::kWhole) {
   LocalMaps maps = empty_maps();
   std::vector<LocalMaps::Point> of_map;
   of_map.reserve(points.size());
   for (const Eigen::Vector3d& p : points) {
     of_map.push_back({T_odom_room * p, Eigen::Vector3f::Zero(), FeatureKind::structure});
   }
-  maps.insert(of_map, LocalMaps::kWhole);
+  maps.insert(of_map, finest);
   return maps;
 }
 
@@ -114,11 +114,47 @@ TEST(Solver, MatchesAWallFromTheSideThatWasSeen) {
   const std::vector<Feature> scan = scan_of(room(2, 3000), {}, {});
   Solver solver({.max_iterations = 20, .structure_kernel = 100.0F}, scan.size());
   const auto found = [&](Sides sides) {
-    return solver.solve(scan, maps, loose_prior({}), LocalMaps::kWhole, sides);
+    return solver.solve(scan, maps, loose_prior({}), Levels::from_whole, sides);
   };
   EXPECT_NEAR(found(Sides::seen).trajectory.at(0.5).translation_m.x(), 0.0, 0.005);
   EXPECT_NEAR(found(Sides::both).trajectory.at(0.5).translation_m.x(), 0.5 * kWidth_m, 0.01);
   EXPECT_LT(found(Sides::seen).matched, found(Sides::both).matched);
+}
+
+/// Seats and shelves beside the sensor: points of all heights from `lowest_m` on.
+std::vector<Eigen::Vector3d> clutter(unsigned seed, double lowest_m, double height_m, int count) {
+  std::mt19937 rng(seed);
+  std::uniform_real_distribution<double> x(-3.0, 3.0), y(1.0, 4.0),
+      z(lowest_m, lowest_m + height_m);
+  std::vector<Eigen::Vector3d> points;
+  for (int k = 0; k < count; ++k) points.emplace_back(x(rng), y(rng), z(rng));
+  return points;
+}
+
+std::vector<Eigen::Vector3d> walls_of_room(unsigned seed, int count) {
+  std::vector<Eigen::Vector3d> points = room(seed, count);
+  std::erase_if(points, [](const Eigen::Vector3d& p) {
+    return p.z() < kFloor_m + 0.1 || p.z() > kCeiling_m - 0.1;
+  });
+  return points;
+}
+
+// Of clutter 0.24 m high the sensor sees the lower half. Whole cells, whose window is 1.5 m wide,
+// take all of it for a surface of its mean height. Half cells know that it is none.
+TEST(Solver, HalfCellsThatDecideDoNotTakeClutterForASurface) {
+  constexpr double kLowest_m = -0.9, kHeight_m = 0.24;
+  std::vector<Eigen::Vector3d> seen_before = walls_of_room(1, 60000);
+  for (const Eigen::Vector3d& p : clutter(4, kLowest_m, kHeight_m, 20000)) seen_before.push_back(p);
+  LocalMaps maps = map_of(seen_before, {}, LocalMaps::kHalf);
+  std::vector<Eigen::Vector3d> seen = walls_of_room(2, 3000);
+  for (const Eigen::Vector3d& p : clutter(5, kLowest_m, 0.5 * kHeight_m, 500)) seen.push_back(p);
+  const std::vector<Feature> scan = scan_of(seen, {}, {});
+  Solver solver(kConfig, scan.size());
+  const auto height_m = [&](Levels levels) {
+    return solver.solve(scan, maps, loose_prior({}), levels).trajectory.at(0.5).translation_m.z();
+  };
+  EXPECT_NEAR(height_m(Levels::first_known), 0.0, 0.01);
+  EXPECT_NEAR(height_m(Levels::from_half), 0.25 * kHeight_m, 0.02);
 }
 
 /// The distance of a wall ahead, which lies on no border of cells either.
