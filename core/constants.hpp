@@ -134,8 +134,7 @@ inline constexpr double kLongestGap_s = 2.5;
 inline constexpr double kInitialPose = 1e-4;
 /// m/s, 1 sigma of the horizontal velocity before the first scan. Range: 10 to 40.
 inline constexpr double kInitialSpeed_mps = 20.0;
-/// m/s, 1 sigma of the vertical velocity before the first scan, and of every scan in rooms. Range:
-/// 0.3 to 1.
+/// m/s, 1 sigma of the vertical velocity before the first scan. Range: 0.25 to 1.
 inline constexpr double kClimb_mps = 0.5;
 /// rad/s, the same of the rates: yaw; roll and pitch.
 inline constexpr double kInitialYaw_radps = 0.5, kInitialTilt_radps = 0.1;

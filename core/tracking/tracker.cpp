@@ -20,14 +20,6 @@ Eigen::Vector2d least_known_axis(const Solution& solution) {
   return by_information.eigenvectors().col(0);
 }
 
-/// In rooms little is seen of floor and ceiling, and a height that neither shows would go on with
-/// the speed of its last error.
-Prior prior_of_alignment(Prior predicted, bool is_room) {
-  const double information = 1.0 / (motion::kClimb_mps * motion::kClimb_mps);
-  if (is_room) observe_velocity(predicted, Eigen::Vector3d::Zero(), {0.0, 0.0, information});
-  return predicted;
-}
-
 }  // namespace
 
 Tracker::Tracker(const OdometryConfig& config)
@@ -147,7 +139,7 @@ std::optional<Solution> Tracker::solve(const Prior& predicted) {
   if (phase_ == Phase::lost && scan_.says_enough()) {
     return relocalize(local_.align(*scan_.features, predicted, scan_.levels), predicted);
   }
-  const Solution found = align_from_prediction(prior_of_alignment(predicted, scan_.is_room));
+  const Solution found = align_from_prediction(predicted);
   if (phase_ == Phase::starting) return found;
   return relocalizer_.follow_turn(found, scan_, predicted, history_, local_);
 }

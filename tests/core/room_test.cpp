@@ -46,27 +46,5 @@ TEST(Room, TheCeilingHoldsTheHeight) {
   EXPECT_LT(worst_m, 0.03);
 }
 
-// Lifted by half a metre. Then neither floor nor ceiling is seen any more. The error grows to 0.9
-// m, and without the prior of the vertical speed to 3.5 m.
-TEST(Room, AHeightThatNothingShowsDoesNotRunAway) {
-  constexpr std::uint64_t kSeen = 18, kUnseen = 50;
-  const auto lifted = [](double t_s) {
-    const double height_m = 0.4 * std::clamp(t_s - 0.5, 0.0, 1.3);
-    return Pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, height_m}};
-  };
-  test::Scene walls, room;
-  walls.planes = room.planes = kWalls;
-  room.planes.push_back({{0.0, 0.0, -1.0}, -1.1});
-  Odometry odometry{OdometryConfig{}};
-  for (std::uint64_t k = 0; k < kSeen + kUnseen; ++k) {
-    const bool is_seen = k < kSeen;
-    const double at_s = 0.1 * static_cast<double>(k);
-    const auto path = [&](double s) { return lifted(at_s + 0.1 * s); };
-    const Estimate e = odometry.process(test::scan_of(is_seen ? room : walls, k16, 900, path, k));
-    const double truth_m = lifted(at_s + 0.1).translation_m.z();
-    EXPECT_NEAR(e.T_odom_sensor.translation_m.z(), truth_m, is_seen ? 0.1 : 1.5) << "scan " << k;
-  }
-}
-
 }  // namespace
 }  // namespace lilo
