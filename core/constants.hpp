@@ -199,7 +199,7 @@ namespace lilo::core::search {
 
 /// Sigmas: to prefer a hypothesis.
 inline constexpr double kPreferSigmas = 2.0;
-/// Sigmas: to drop a hypothesis on a quarter of the points, a usual motion, or a session.
+/// Sigmas: to drop a hypothesis on a quarter of the points, or a session.
 inline constexpr double kDropSigmas = 3.0;
 /// Sigmas: to restart from another motion.
 inline constexpr double kRestartSigmas = 1.0;
@@ -271,8 +271,6 @@ namespace lilo::core::tracking {
 inline constexpr std::size_t kMinFeatures = 100;
 /// Metres: more than half of the structure is nearer in a room.
 inline constexpr float kRoom_m = 5.0F;
-/// Sigmas of the normalised innovation from which a motion is exceptional.
-inline constexpr double kExceptionalSigmas = 3.0;
 /// Least mean robust weight of an alignment. A good one has 0.7 and more.
 inline constexpr double kMinMeanWeight = 0.3;
 /// Scans in a row without an alignment that end a session.

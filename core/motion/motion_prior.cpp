@@ -86,7 +86,6 @@ Vector6d normalised_innovation(const Prior& prior, const Unknowns& x) {
 }
 
 Prior inflated(Prior prior, const Vector6d& innovation) {
-  if (!prior.has_heavy_tails) return prior;
   prior.acceleration_density.array() *= innovation.array().max(1.0);
   return prior;
 }

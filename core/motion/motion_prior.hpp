@@ -27,7 +27,6 @@ struct Prior {
   KnotInformation begin_information = KnotInformation::Identity();
   /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
   Vector6d acceleration_density = Vector6d::Ones();
-  bool has_heavy_tails = true;  ///< an innovation inflates the process noise
 };
 
 /// Adds what is known of the velocity at the beginning besides the last scan: `velocity_mps` with

@@ -2,7 +2,6 @@
 #include "core/tracking/local_odometry.hpp"
 
 #include "core/constants.hpp"
-#include "core/search/hypothesis.hpp"
 
 #include <Eigen/LU>
 
@@ -31,17 +30,6 @@ LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_featu
       process_noise_(nominal_density(config)),
       uncertainty_(config.data_weight),
       least_segments_(config.segments) {}
-
-Solution LocalOdometry::align_checked(const std::vector<Feature>& features, const Prior& prior,
-                                      Levels levels, Sides sides) {
-  const double exceptional = tracking::kExceptionalSigmas * tracking::kExceptionalSigmas;
-  Solution found = align(features, prior, levels, sides);
-  if (normalised_innovation(prior, found.trajectory.knots).maxCoeff() < exceptional) return found;
-  Prior usual_prior = prior;
-  usual_prior.has_heavy_tails = false;
-  Solution usual = align(features, usual_prior, levels, sides);
-  return is_significant(found.inliers, usual.inliers, search::kDropSigmas) ? found : usual;
-}
 
 void LocalOdometry::accept(const ScanTiming& scan, const Solution& solution) {
   const Trajectory& trajectory = solution.trajectory;

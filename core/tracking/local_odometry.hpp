@@ -38,11 +38,6 @@ class LocalOdometry {
                  Levels levels = Levels::from_whole, Sides sides = Sides::seen) {
     return solver_.solve(features, map_.cells(), prior, levels, sides);
   }
-  /// The same, but takes an exceptional motion only if it fits significantly better than a usual
-  /// one. Where little of a scan matches, the heavy tails of the prior let it jump to a place that
-  /// looks alike.
-  Solution align_checked(const std::vector<Feature>& features, const Prior& prior, Levels levels,
-                         Sides sides = Sides::seen);
   /// The prediction as a solution in which nothing matched.
   [[nodiscard]] Solution unaligned(const Prior& prior) const { return solver_.unaligned(prior); }
 

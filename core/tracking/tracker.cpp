@@ -122,13 +122,13 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
 /// Where the sensor comes through a wall or out of foliage, it may see nothing that it saw before
 /// but the other sides. They hold the sensor until the map knows more.
 Solution Tracker::align_from_prediction(const Prior& prior) {
-  Solution found = local_.align_checked(*scan_.features, prior, scan_.levels);
+  Solution found = local_.align(*scan_.features, prior, scan_.levels);
   if (phase_ == Phase::starting) return found;
   if (!is_lost(found) &&
       history_.fit.relative(found, scan_.structure) > registration::kDoubtfulFit) {
     return found;
   }
-  return local_.align_checked(*scan_.features, prior, scan_.levels, Sides::both);
+  return local_.align(*scan_.features, prior, scan_.levels, Sides::both);
 }
 
 /// None where the session is to end.

@@ -177,8 +177,7 @@ TEST_F(LocalOdometryTest, ASensorIsFollowedWhenItSetsOff) {
       return Pose{kAhead, {x_m(begin_s + s * kSpan_s), 0.0, 0.0}};
     };
     const test::ObservedScan scan(test::yard(), path, k);
-    const Solution solution =
-        local_.align_checked(scan.features(), local_.predict(scan.timing()), Levels::from_whole);
+    const Solution solution = local_.align(scan.features(), local_.predict(scan.timing()));
     local_.accept(scan.timing(), solution);
     local_.grow_map({.timing = scan.timing(), .levels = Levels::from_whole}, scan.features(),
                     solution, MapUse::keyframe);
