@@ -271,8 +271,6 @@ namespace lilo::core::tracking {
 inline constexpr std::size_t kMinFeatures = 100;
 /// Metres: more than half of the structure is nearer in a room.
 inline constexpr float kRoom_m = 5.0F;
-/// Least mean robust weight of an alignment. A good one has 0.7 and more.
-inline constexpr double kMinMeanWeight = 0.3;
 /// Scans in a row without an alignment that end a session.
 inline constexpr int kScansToGiveUp = 10;
 

@@ -164,10 +164,8 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
 
 /// Whether an alignment found too little of the scan in the map.
 bool Tracker::is_lost(const Solution& solution) const {
-  const double matched = solution.matched;
   // A number, not a part of the features: in a park a fifth of them may match in a good alignment.
-  return matched < static_cast<double>(tracking::kMinFeatures) ||
-         solution.inliers < tracking::kMinMeanWeight * matched ||
+  return static_cast<std::size_t>(solution.matched) < tracking::kMinFeatures ||
          history_.fit.relative(solution, scan_.structure) < registration::kChanceFit;
 }
 
