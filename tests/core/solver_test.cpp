@@ -127,6 +127,7 @@ std::vector<Eigen::Vector3d> clutter(unsigned seed, double lowest_m, double heig
   std::uniform_real_distribution<double> x(-3.0, 3.0), y(1.0, 4.0),
       z(lowest_m, lowest_m + height_m);
   std::vector<Eigen::Vector3d> points;
+  points.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) points.emplace_back(x(rng), y(rng), z(rng));
   return points;
 }
