@@ -17,8 +17,8 @@ struct Observation {
   const std::vector<Feature>* features = nullptr;  ///< those selected for alignment
   double structure = 0.0;                          ///< how many of them are structure
   bool is_room = false;  ///< more than half of the structure is near, as in rooms
-  /// Of the map. In rooms half cells decide: a whole one takes seats, tables and shelves for one
-  /// piece of rough ground, of which the sensor sees another part as it moves, and rises with it.
+  /// Of the map. In rooms the smallest known cell decides. A larger one takes seats and tables for
+  /// rough ground, and as the sensor sees other parts of them it rises.
   Levels levels = Levels::from_whole;
   bool is_complete = false;  ///< Scan::complete
 

@@ -142,7 +142,7 @@ std::vector<Eigen::Vector3d> walls_of_room(unsigned seed, int count) {
 
 // Of clutter 0.24 m high the sensor sees the lower half. Whole cells, whose window is 1.5 m wide,
 // take all of it for a surface of its mean height. Half cells know that it is none.
-TEST(Solver, HalfCellsThatDecideDoNotTakeClutterForASurface) {
+TEST(Solver, TheSmallestKnownCellDoesNotTakeClutterForASurface) {
   constexpr double kLowest_m = -0.9, kHeight_m = 0.24;
   std::vector<Eigen::Vector3d> seen_before = walls_of_room(1, 60000);
   for (const Eigen::Vector3d& p : clutter(4, kLowest_m, kHeight_m, 20000)) seen_before.push_back(p);
