@@ -118,9 +118,12 @@ class Vlp16:
     def packet(self, number):
         time_s = number * self.PACKET_S
         blocks, out = self._blocks[self.scene, int(time_s * 10) % self.NOISES], []
+        # Every packet begins at half a step of 0.01 degrees: one that began below 0.06 would have 437
+        # steps from its first block to its last instead of 438, and tell 599 rpm.
+        first = 0.5 if self.frozen_azimuth else int(time_s * 10 % 1 * 36000) + 0.5
+        per_block = 0.0 if self.frozen_azimuth else 2 * 55.296e-6 * 10 * 36000
         for block in range(12):
-            at = 0.0 if self.frozen_azimuth else time_s + block * 2 * 55.296e-6
-            azimuth = int(at * 10 % 1 * 36000)
+            azimuth = int(first + block * per_block) % 36000
             flag = 0xddff if self.hdl64e and block % 2 else 0xeeff
             out.append(struct.pack("<HH", flag, azimuth) + blocks[azimuth // 10])
         stamp = 0 if self.frozen_stamp else int(time_s * 1e6) % 3600000000
