@@ -20,7 +20,8 @@ namespace lilo::core {
 struct Match {
   Eigen::Vector3f from_mean_m;             ///< from the mean of the map points around it
   const Symmetric* information = nullptr;  ///< 1/m^2; nullptr: the map tells nothing there
-  /// Whether there are enough points: if they tell nothing, they are thick or a strip of ground.
+  /// Whether there are enough points, seen from this side. If they tell nothing, they are thick or
+  /// a strip of ground.
   bool is_known = false;
 };
 
@@ -108,7 +109,7 @@ class CellMap {
     if (at == kNone) return {};
     Cell& cell = cells_[static_cast<std::size_t>(at)];
     if (keyframe_ >= cell.refit_at) fit(cell);
-    if (cell.information.isZero(0.0F)) return {.from_mean_m = {}, .is_known = cell.is_known};
+    if (cell.information.isZero(0.0F)) return {.is_known = cell.is_known};
     if (is_behind(cell, ray)) return {};
     return {.from_mean_m = (point_m - center_of(cell.index)).cast<float>() - cell.mean_m,
             .information = &cell.information,

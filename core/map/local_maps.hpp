@@ -31,10 +31,10 @@ class LocalMaps {
   static constexpr std::size_t kLevels = 3;
   static constexpr std::size_t kHalf = 0, kWhole = 1, kCoarse = 2;
   using PerLevel = std::array<std::int32_t, kLevels>;
+  static constexpr PerLevel kNoCells{CellMap::kNone, CellMap::kNone, CellMap::kNone};
   static constexpr std::size_t finest_of(Levels levels) {
     return levels == Levels::from_whole ? kWhole : kHalf;
   }
-  static constexpr PerLevel kNoCells{CellMap::kNone, CellMap::kNone, CellMap::kNone};
 
   /// `configs`: of each level the ground map, then the structure map.
   explicit LocalMaps(const std::array<std::array<CellMapConfig, 2>, kLevels>& configs);

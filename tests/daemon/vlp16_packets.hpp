@@ -58,8 +58,8 @@ class RoomSource : public PacketSource {
         block_ns + (channel < 16 ? 0.0 : 55296.0) + 2304.0 * static_cast<double>(laser);
     const double elevation_deg = static_cast<double>(laser) - (laser % 2 == 0 ? 15.0 : 0.0);
     const double azimuth_rad = std::fmod(fired_ns / 0.1e9, 1.0) * 2.0 * std::numbers::pi;
-    const double range = range_m(azimuth_rad, elevation_deg * std::numbers::pi / 180.0);
-    return static_cast<unsigned>(std::lround(500.0 * range));
+    const double elevation_rad = elevation_deg * std::numbers::pi / 180.0;
+    return static_cast<unsigned>(std::lround(500.0 * range_m(azimuth_rad, elevation_rad)));
   }
 
   /// To the nearest wall, floor or ceiling.
