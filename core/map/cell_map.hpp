@@ -122,6 +122,9 @@ class CellMap {
     const std::int32_t at = table_.find(key.bucket, CellTable::tag_of(key.index));
     if (at == kNone) return make(key);
     prefetch_sums(at);
+    const auto cell = static_cast<std::size_t>(at);
+    if (config_.one_sided) __builtin_prefetch(&rays_[cell]);
+    if (config_.with_sensitivity) __builtin_prefetch(&sensitivities_[cell]);
     return at;
   }
   void add(std::int32_t at, const CellKey& key, const Eigen::Vector3d& point_m,
