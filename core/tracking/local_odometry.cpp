@@ -70,7 +70,8 @@ void LocalOdometry::grow_map(const Observation& scan, const std::vector<Feature>
 }
 
 Pose LocalOdometry::begin_map(const ScanTiming& first) {
-  Pose at = predicted_end(predict(first));
+  accept_prediction(first, predict(first));
+  Pose at = state_.T_odom_sensor;
   uncertainty_.begin_map(state_);
   process_noise_.interrupt();
   stationary_.reset();
