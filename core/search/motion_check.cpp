@@ -18,8 +18,7 @@ void MotionCheck::clear() {
   scan_count_ = 0;
   times_refuted_ = 0;
   ambiguity_ = 0.0;
-  ambiguous_scans_ = weak_scans_ = 0;
-  ambiguity_ended_ = false;
+  count_ambiguous_scans();
 }
 
 void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
@@ -28,6 +27,10 @@ void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin,
   scans_.add(structure_, T_begin, T_end, timing);
   ++scan_count_;
   if (newest_is_spaced()) spaced_scans_.add(structure_, T_begin, T_end, timing);
+  count_ambiguous_scans();
+}
+
+void MotionCheck::count_ambiguous_scans() {
   ambiguity_ended_ = !is_ambiguous() && ambiguous_scans_ >= search::kAmbiguousScans &&
                      2 * weak_scans_ < ambiguous_scans_;
   if (is_ambiguous()) {

@@ -45,6 +45,7 @@ class MotionCheck {
   [[nodiscard]] bool ambiguity_ended() const { return ambiguity_ended_; }
 
  private:
+  void count_ambiguous_scans();
   [[nodiscard]] bool newest_is_spaced() const {
     return (scan_count_ - 1) % search::kAmbiguityStride == 0;
   }

@@ -103,6 +103,7 @@ void Tracker::begin_map() {
               .restarts = session_.restarts};
   initializer_.clear();
   calibration_.begin_map();
+  motion_check_.clear();
   history_.fit = {};
   phase_ = Phase::starting;
 }
@@ -241,8 +242,11 @@ void Tracker::watch_session() {
     ++session_.unexplained_scans;
   }
   const bool refuted = is_refuted();
-  if (refuted) alignment_.status = TrackingStatus::lost;
-  if (motion_check_.ambiguity_ended()) alignment_.status = TrackingStatus::degraded;
+  if (refuted) {
+    alignment_.status = TrackingStatus::lost;
+  } else if (motion_check_.ambiguity_ended() && alignment_.status == TrackingStatus::tracking) {
+    alignment_.status = TrackingStatus::degraded;
+  }
   session_.is_over = refuted || motion_check_.ambiguity_ended() ||
                      session_.unexplained_scans == tracking::kScansToGiveUp;
 }

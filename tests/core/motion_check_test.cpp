@@ -226,6 +226,30 @@ TEST(MotionCheck, WhatWasAmbiguousInATunnelEndsNoSession) {
   EXPECT_FALSE(ambiguity_ends(1));
 }
 
+// What was tracked meanwhile is as doubtful where the sensor was lost as where one motion won.
+TEST(MotionCheck, ALostScanEndsTheAmbiguityOnce) {
+  Lanes lanes(120, 120, 1.0, 0.05);
+  MotionCheck check(2000);
+  int in_a_row = 0;
+  for (int k = 1; k <= 100 && in_a_row < 12; ++k) {
+    const double end_s = kSpan_s * k;
+    Pose begin, end;
+    begin.translation_m.x() = kSpeed_mps * (end_s - kSpan_s);
+    end.translation_m.x() = kSpeed_mps * end_s;
+    check.add(lanes.scan(end_s), begin, end, timing(1e9 * end_s));
+    check.is_refuted({1.0, 0.0});
+    check.observe_ambiguity({1.0, 0.0}, false);
+    in_a_row = check.is_ambiguous() ? in_a_row + 1 : 0;
+  }
+  ASSERT_EQ(in_a_row, 12);
+  EXPECT_FALSE(check.ambiguity_ended());
+  check.clear();
+  EXPECT_TRUE(check.ambiguity_ended());
+  EXPECT_FALSE(check.is_ambiguous());
+  check.clear();
+  EXPECT_FALSE(check.ambiguity_ended());
+}
+
 TEST(MotionCheck, AFewCarsDoNotMakeItAmbiguous) {
   EXPECT_EQ(ambiguous_scans({150, 8, 1.0, 0.05}, kSpeed_mps), 0);
 }
