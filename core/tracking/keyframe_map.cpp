@@ -40,6 +40,7 @@ KeyframeMap::KeyframeMap(const DefaultConfig& config)
 }
 
 void KeyframeMap::clear() {
+  ++revision_;
   cells_.clear();
   held_.is_waiting = false;
   T_odom_keyframe_ = {};
@@ -103,6 +104,7 @@ void KeyframeMap::hold(const std::vector<Feature>& features, bool with_overhead)
 }
 
 void KeyframeMap::insert_held() {
+  ++revision_;
   held_.is_waiting = false;
   sample(held_.trajectory, sampled_);
   points_.clear();

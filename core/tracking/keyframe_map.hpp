@@ -47,6 +47,8 @@ class KeyframeMap {
   [[nodiscard]] LocalMaps& cells() { return cells_; }
   [[nodiscard]] const LocalMaps& cells() const { return cells_; }
   [[nodiscard]] int keyframes() const { return keyframes_; }
+  /// Counts how often points have entered it, or it was emptied.
+  [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
   /// The points that entered the map with the last scan, in the frame of the map.
   [[nodiscard]] std::span<const LocalMaps::Point> inserted() const { return points_; }
@@ -80,6 +82,7 @@ class KeyframeMap {
   std::vector<LocalMaps::Point> points_;  // inserted after the last scan
   Pose T_odom_keyframe_;
   int keyframes_ = 0;
+  std::uint64_t revision_ = 0;
 };
 
 }  // namespace lilo::core

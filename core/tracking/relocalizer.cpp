@@ -62,11 +62,10 @@ bool is_in_place(const Solution& found, const Prior& prior, double relative_fit)
              0;
 }
 
-void Relocalizer::draw_map(const AlignmentHistory& history, const Eigen::Vector3d& center_m,
-                           const LocalOdometry& local) {
-  if (map_end_ns_ == history.end_ns) return;
+void Relocalizer::draw_map(const Eigen::Vector3d& center_m, const LocalOdometry& local) {
+  if (drawn_revision_ == local.map().revision()) return;
   search_.set_map(local.map().cells().at(LocalMaps::kCoarse, FeatureKind::structure), center_m);
-  map_end_ns_ = history.end_ns;
+  drawn_revision_ = local.map().revision();
 }
 
 std::optional<Solution> Relocalizer::find(const Observation& scan, const Prior& prior,
@@ -94,7 +93,7 @@ void Relocalizer::attempt_all(const Observation& scan, const Prior& prior,
   const double time_s = history.unseen_s(scan.timing) + scan.timing.span_s();
   const SearchRadius radius{0.5 * search::kMostAcceleration_mps2 * time_s * time_s,
                             search::kMostYawRate_radps * time_s, 0.0};
-  draw_map(history, T_end.translation_m, local);
+  draw_map(T_end.translation_m, local);
   attempts_[0] = at_prediction;
   attempt_count_ = 1;
   for (const Displacement& by : search_.find(*scan.features, predicted, radius)) {
@@ -142,7 +141,7 @@ std::optional<Solution> Relocalizer::better_turned(const Solution& found, const 
                                                    const SearchRadius& radius,
                                                    LocalOdometry& local) {
   const Trajectory predicted = local.unaligned(prior).trajectory;
-  draw_map(history, predicted.end().translation_m, local);
+  draw_map(predicted.end().translation_m, local);
   const bool may_begin_elsewhere = radius.begin_yaw_rad > 0.0;
   const Eigen::Vector3d place_m = predicted.end().translation_m;
   Solution best = found;

@@ -54,8 +54,7 @@ class Relocalizer {
                        const AlignmentHistory& history, LocalOdometry& local);
 
  private:
-  void draw_map(const AlignmentHistory& history, const Eigen::Vector3d& center_m,
-                const LocalOdometry& local);
+  void draw_map(const Eigen::Vector3d& center_m, const LocalOdometry& local);
   void attempt_all(const Observation& scan, const Prior& prior, const Solution& at_prediction,
                    const AlignmentHistory& history, LocalOdometry& local);
   std::optional<Solution> better_turned(const Solution& found, const Observation& scan,
@@ -67,7 +66,7 @@ class Relocalizer {
   }
 
   DisplacementSearch search_;
-  std::int64_t map_end_ns_ = 0;  // AlignmentHistory::end_ns when the search was given the map
+  std::optional<std::uint64_t> drawn_revision_;  // of the map that the search was given
   std::array<Solution, search::kMostPlaces + 1> attempts_;
   std::size_t attempt_count_ = 0;
 };
