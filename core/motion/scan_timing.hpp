@@ -4,6 +4,7 @@
 #include "core/constants.hpp"
 
 #include <cstdint>
+#include <cstdlib>
 
 namespace lilo::core {
 
@@ -19,7 +20,7 @@ struct ScanTiming {
   }
   /// Whether no firing is missing between a scan that ended at `previous_end_ns` and this one.
   [[nodiscard]] bool follows(std::int64_t previous_end_ns) const {
-    return start_ns - previous_end_ns < motion::kNextFiring_ns;
+    return std::abs(start_ns - previous_end_ns) < motion::kNextFiring_ns;
   }
 };
 

@@ -162,7 +162,7 @@ void Solver::add_residual(const Correspondence& one, float kernel_scale, float d
       C(1, 0), C(1, 1), C(1, 2), C(2, 0), C(2, 1), C(2, 2), i[0],    i[1],    i[2],
       i[3],    i[4],    i[5],    -pOr[0], -pOr[1], -pOr[2], -Or[0],  -Or[1],  -Or[2]};
   const float w = robust * data_weight;
-  // The nearest, without a call.
+  // The nearest instant; std::lround() would be a call.
   const float and_half = one.feature->s * registration::kResidualInstants + 0.5F;
   double* sum = bins_[static_cast<std::size_t>(and_half)].data();
   for (std::size_t k = 0; k < terms.size(); ++k) sum[k] += static_cast<double>(w * terms[k]);
@@ -235,7 +235,7 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     auto& [H, b] = data;
     add_prior(prior, x, H, b);
     const Unknowns step = H.ldlt().solve(b);
-    if (!step.allFinite()) break;
+    if (!step.allFinite()) return unaligned(prior);
     solution.trajectory.knots += (stride == 1 ? registration::kOverRelaxation : 1.0) * step;
     ++solution.iterations;
     const Vector6d end = step.segment<6>(n - kKnotSize);

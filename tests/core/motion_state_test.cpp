@@ -82,6 +82,7 @@ TEST(ScanTiming, FollowsWhereNoFiringIsMissing) {
   const ScanTiming scan{1'000'000'000, 1'100'000'000};
   EXPECT_TRUE(scan.follows(999'950'000));
   EXPECT_FALSE(scan.follows(990'000'000));
+  EXPECT_FALSE(scan.follows(2'000'000'000)) << "the clock was set back";
   EXPECT_NEAR(scan.span_s(), 0.1, 1e-12);
   EXPECT_NEAR((ScanTiming{5, 5}.span_s()), 0.1, 1e-12) << "stamps that tell nothing";
 }
