@@ -189,7 +189,7 @@ inline constexpr double kPoorFitSigmas = 3.0;
 /// Fit over the usual one, below which a better alignment may have been missed. A scan whose solver
 /// did not converge needs as much.
 inline constexpr double kDoubtfulFit = 0.5;
-/// The same ratio, which is found at any place.
+/// The same ratio as it comes out at a wrong place, by chance.
 inline constexpr double kChanceFit = 0.25;
 
 }  // namespace lilo::core::registration
@@ -271,7 +271,7 @@ namespace lilo::core::tracking {
 inline constexpr std::size_t kMinFeatures = 100;
 /// Metres: more than half of the structure is nearer in a room.
 inline constexpr float kRoom_m = 5.0F;
-/// Scans in a row without an alignment that end a session.
+/// Scans in a row, each with enough features, that the map does not explain: they end a session.
 inline constexpr int kScansToGiveUp = 10;
 
 /// m/s, 1 sigma of a velocity near rest or near the tracked one. A motion farther off is another.
@@ -297,7 +297,7 @@ inline constexpr double kEarlierTurn_rad = 1.2, kTurnedBefore_rad = 0.4;
 /// Metres, 1 sigma of a place that was searched; a turn in place ends no farther off.
 inline constexpr double kFoundPlace_m = 0.5;
 inline constexpr double kFoundPlace_rad = kFoundPlace_m / motion::kLever_m;
-/// Sum of robust weights of ground: structure leaves height and tilt open.
+/// Least sum of the robust weights of ground: structure alone leaves height and tilt open.
 inline constexpr double kMinGround = 0.5 * static_cast<double>(kMinFeatures);
 /// Metres from the prediction, within which an alignment is exactly there.
 inline constexpr double kInPlace_m = 0.2;

@@ -12,8 +12,9 @@ namespace lilo {
 enum class TrackingStatus : std::uint8_t {
   initializing,  ///< no map yet, or not yet sure of the first motion
   tracking,      ///< aligned with the map
-  degraded,      ///< aligned, but the prediction held some direction, data were missing, or the
-                 ///< last scans fit under two motions
+  degraded,      ///< aligned, but the prediction held some direction, data were missing, less than
+                 ///< half of the usual structure fits, the solver did not converge, or the last
+                 ///< scans fit under two motions
   lost,          ///< not aligned: the pose is the prediction; or it was just found to be wrong
 };
 

@@ -13,7 +13,7 @@
 namespace lilo::core {
 namespace {
 
-/// Scaled to the largest integers.
+/// The direction, scaled so that its largest part is the largest integer.
 std::array<std::int16_t, 3> direction_of(const Eigen::Vector3f& v) {
   const float largest = v.cwiseAbs().maxCoeff();
   if (!(largest > 0.0F)) return {};

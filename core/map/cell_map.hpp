@@ -198,7 +198,7 @@ class CellMap {
   /// std::floor() is a call where the processor need not have SSE 4.1. Values beyond a billion
   /// cells are cut off there, and so is nan.
   static std::int32_t floor_of(double v) {
-    constexpr std::uint32_t kAbove = 1U << 30U;  // zero: from there, to cut off is to round down
+    constexpr std::uint32_t kAbove = 1U << 30U;  // added first: to cut off is then to round down
     constexpr double kFar = kAbove - 2U;
     v = v > -kFar ? v : -kFar;
     v = v < kFar ? v : kFar;

@@ -26,8 +26,9 @@ enum class Levels : std::uint8_t {
 /// Memory is reserved at construction. Not thread-safe.
 class LocalMaps {
  public:
-  /// Half cells, whole cells and coarse cells. Half cells are used in rooms, on stairs and in
-  /// garages, where three whole cells blur walls, doors and furniture into one another.
+  /// Half cells, whole cells and coarse cells. Half cells are used in rooms, where three whole
+  /// cells blur walls, doors and furniture into one another, and after a scan with a weak
+  /// direction.
   static constexpr std::size_t kLevels = 3;
   static constexpr std::size_t kHalf = 0, kWhole = 1, kCoarse = 2;
   using PerLevel = std::array<std::int32_t, kLevels>;

@@ -95,7 +95,8 @@ void DisplacementSearch::try_turned(const Displacement& turned, int farthest) {
   }
 }
 
-/// By one step of yaw, and by so many along. Leaves the hypotheses of the finer map alone.
+/// By one step of yaw, and by so many along. Afterwards only the hypotheses scored on the finer map
+/// are left.
 void DisplacementSearch::refine_best(int along) {
   const std::size_t best = std::min(search::kRefinedPlaces, hypotheses_.size());
   const auto end_of_best = hypotheses_.begin() + static_cast<std::ptrdiff_t>(best);

@@ -35,7 +35,7 @@ class TrackedScans {
            const ScanTiming& timing);
   [[nodiscard]] bool is_full() const { return count_ == scans_.size(); }
   /// Cells that all scans occupy together, as though the sensor had moved by `more` in each second
-  /// in addition to how it was tracked. Only of what is full.
+  /// in addition to how it was tracked. To be called only if is_full().
   int occupied_under(const Displacement& more, Subsample subsample, TopDownGrid& grid) const;
   /// The sum of the cells that each scan occupies alone.
   int occupied_alone(TopDownGrid& grid) const;
