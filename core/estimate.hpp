@@ -12,7 +12,7 @@ namespace lilo {
 enum class TrackingStatus : std::uint8_t {
   initializing,  ///< no map yet, or not yet sure of the first motion
   tracking,      ///< aligned with the map
-  degraded,      ///< aligned, but the prediction held some direction, data were missing, less than
+  degraded,      ///< aligned, but the prediction held some direction, data were missing, at most
                  ///< half of the usual structure fits, the solver did not converge, or the last
                  ///< scans fit under two motions
   lost,          ///< not aligned: the pose is the prediction; or it was just found to be wrong

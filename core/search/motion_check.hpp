@@ -27,6 +27,7 @@ class MotionCheck {
   /// `most_features`: of one scan.
   explicit MotionCheck(std::size_t most_features);
 
+  /// Forgets all scans. An ambiguity ends with it (ambiguity_ended()).
   void clear();
   /// The next scan as it was tracked. If its returns were compensated, both poses are the last one.
   void add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,

@@ -103,7 +103,7 @@ void Tracker::begin_map() {
               .restarts = session_.restarts};
   initializer_.clear();
   calibration_.begin_map();
-  motion_check_.clear();
+  motion_check_.clear();  // an ambiguity of the old map must not end the new session
   history_.fit = {};
   phase_ = Phase::starting;
 }

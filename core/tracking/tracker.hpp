@@ -22,10 +22,11 @@ namespace lilo::core {
 
 /// What the tracker is doing:
 ///
-///     starting -> tracking   the initial motion is known (Initializer: 4 scans if stationary, else
-///     6) tracking -> lost       no scan was aligned for 0.35 s (motion::kShortGap_s) lost     ->
-///     tracking   the sensor was found in the map (Relocalizer) starting -> starting   the first
-///     scans cannot be continued: a fragment, or too long ago
+///     starting -> tracking   the initial motion is known (Initializer: 4 or 6 scans)
+///     starting -> lost       it is known, but no scan was aligned for 0.35 s (motion::kShortGap_s)
+///     tracking -> lost       no scan was aligned for 0.35 s
+///     lost     -> tracking   the sensor was found in the map (Relocalizer)
+///     starting -> starting   the first scans cannot be continued: a fragment, or too long ago
 ///
 /// A new session begins with an empty map and the phase `starting`, from
 ///
