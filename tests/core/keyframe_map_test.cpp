@@ -71,10 +71,13 @@ TEST_F(KeyframeMapTest, EntersOneScanLate) {
   fill();
   grow(3.0, MapUse::none);  // whatever was held is in
   const int before = map_.cells().size();
+  const std::uint64_t revision = map_.revision();
   ASSERT_TRUE(grow(9.0));
   EXPECT_EQ(map_.cells().size(), before);
+  EXPECT_EQ(map_.revision(), revision);
   grow(9.0);
   EXPECT_GT(map_.cells().size(), before);
+  EXPECT_GT(map_.revision(), revision);
 }
 
 // The next scan begins 0.4 m beside where the keyframe was thought to end.

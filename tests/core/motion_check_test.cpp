@@ -151,18 +151,23 @@ class Lanes {
   double cars_mps_, rough_m_;
 };
 
+/// Takes the scan number `k`, tracked along x.
+void take(MotionCheck& check, int k, const std::vector<Feature>& features,
+          double tracked_mps = kSpeed_mps, bool has_weak_direction = false) {
+  Pose begin, end;
+  begin.translation_m.x() = tracked_mps * kSpan_s * (k - 1);
+  end.translation_m.x() = tracked_mps * kSpan_s * k;
+  check.add(features, begin, end, timing(1e9 * kSpan_s * k));
+  check.is_refuted({1.0, 0.0});
+  check.observe_ambiguity({1.0, 0.0}, has_weak_direction);
+}
+
 /// Scans of 100 after which the motion is ambiguous.
 int ambiguous_scans(Lanes lanes, double tracked_mps) {
   MotionCheck check(2000);
   int ambiguous = 0;
   for (int k = 1; k <= 100; ++k) {
-    const double end_s = kSpan_s * k;
-    Pose begin, end;
-    begin.translation_m.x() = tracked_mps * (end_s - kSpan_s);
-    end.translation_m.x() = tracked_mps * end_s;
-    check.add(lanes.scan(end_s), begin, end, timing(1e9 * end_s));
-    check.is_refuted({1.0, 0.0});
-    check.observe_ambiguity({1.0, 0.0}, false);
+    take(check, k, lanes.scan(kSpan_s * k), tracked_mps);
     if (check.is_ambiguous()) ++ambiguous;
   }
   return ambiguous;
@@ -183,20 +188,12 @@ TEST(MotionCheck, WhereEverythingIsFixedTheMotionIsNotAmbiguous) {
 
 TEST(MotionCheck, ScansWithoutStructureDoNotEndTheSearchForAmbiguity) {
   MotionCheck check(2000);
-  const auto take = [&](int k, const std::vector<Feature>& features) {
-    Pose begin, end;
-    begin.translation_m.x() = kSpeed_mps * kSpan_s * (k - 1);
-    end.translation_m.x() = kSpeed_mps * kSpan_s * k;
-    check.add(features, begin, end, timing(1e9 * kSpan_s * k));
-    check.is_refuted({1.0, 0.0});
-    check.observe_ambiguity({1.0, 0.0}, false);
-  };
-  for (int k = 1; k <= 40; ++k) take(k, {});
+  for (int k = 1; k <= 40; ++k) take(check, k, {});
   EXPECT_FALSE(check.is_ambiguous());
   Lanes lanes(120, 120, 1.0, 0.05);
   bool was_ambiguous = false;
   for (int k = 41; k <= 100; ++k) {
-    take(k, lanes.scan(kSpan_s * k));
+    take(check, k, lanes.scan(kSpan_s * k));
     was_ambiguous |= check.is_ambiguous();
   }
   EXPECT_TRUE(was_ambiguous);
@@ -209,12 +206,8 @@ bool ambiguity_ends(int weak_stride) {
   Lanes moving(120, 120, 1.0, 0.05), fixed(150, 0, 0.0, 0.05);
   bool has_ended = false;
   for (int k = 1; k <= 100; ++k) {
-    Pose begin, end;
-    begin.translation_m.x() = kSpeed_mps * kSpan_s * (k - 1);
-    end.translation_m.x() = kSpeed_mps * kSpan_s * k;
-    check.add((k <= 60 ? moving : fixed).scan(kSpan_s * k), begin, end, timing(1e9 * kSpan_s * k));
-    check.is_refuted({1.0, 0.0});
-    check.observe_ambiguity({1.0, 0.0}, weak_stride > 0 && k % weak_stride == 0);
+    take(check, k, (k <= 60 ? moving : fixed).scan(kSpan_s * k), kSpeed_mps,
+         weak_stride > 0 && k % weak_stride == 0);
     has_ended |= check.ambiguity_ended();
   }
   return has_ended;
@@ -232,13 +225,7 @@ TEST(MotionCheck, ALostScanEndsTheAmbiguityOnce) {
   MotionCheck check(2000);
   int in_a_row = 0;
   for (int k = 1; k <= 100 && in_a_row < 12; ++k) {
-    const double end_s = kSpan_s * k;
-    Pose begin, end;
-    begin.translation_m.x() = kSpeed_mps * (end_s - kSpan_s);
-    end.translation_m.x() = kSpeed_mps * end_s;
-    check.add(lanes.scan(end_s), begin, end, timing(1e9 * end_s));
-    check.is_refuted({1.0, 0.0});
-    check.observe_ambiguity({1.0, 0.0}, false);
+    take(check, k, lanes.scan(kSpan_s * k));
     in_a_row = check.is_ambiguous() ? in_a_row + 1 : 0;
   }
   ASSERT_EQ(in_a_row, 12);

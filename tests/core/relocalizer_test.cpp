@@ -62,6 +62,11 @@ TEST_F(RelocalizerTest, FindsASensorThatWasCarriedWithinReach) {
   }
 }
 
+TEST_F(RelocalizerTest, FindsASensorThatWasLastAlignedAtStampZero) {
+  history_.end_ns = 0;
+  EXPECT_TRUE(found_at(test::yard(), at(1.5, -1.0, 0.5)));
+}
+
 TEST_F(RelocalizerTest, FindsNothingInAnotherPlace) {
   test::Scene elsewhere;
   elsewhere.planes = {
