@@ -63,7 +63,7 @@ std::vector<Key> default_profile_keys() {
       boolean("odometry.default.calibrate_beams",
               LILO_MEMBER(odometry.default_profile.calibrate_beams), kRestart,
               "Estimate, while driving, errors that the sensor's calibration does not know: of the "
-              "rings' elevations against each other, and the eccentricity of the encoder."),
+              "rings' elevations, and the eccentricity of the encoder."),
       real("odometry.default.roll_pitch_density",
            LILO_MEMBER(odometry.default_profile.roll_pitch_density), 0.0001, 100.0, "", kRestart,
            "Least process noise of roll and pitch: power density of the angular acceleration "

@@ -5,9 +5,11 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lilo::core {
 namespace {
@@ -28,6 +30,35 @@ bool is_applied(double eccentricity_rad) {
          eccentricity_rad < calibration::kLargest_rad;
 }
 
+/// The same for the common error of the elevations.
+bool is_plausible(double common_rad) {
+  return std::abs(common_rad) >= calibration::kSmallestCommon_rad &&
+         std::abs(common_rad) < calibration::kLargest_rad;
+}
+
+/// Part of the information of an observation that the next one leaves.
+constexpr double kKept = 1.0 - 1.0 / calibration::kMemory;
+
+/// That of the prior, over weights that are left out of a ratio.
+constexpr double kUnweightedPrior = calibration::kPriorInformation / calibration::kWeight;
+
+/// Near 1 where a ring has seen the ground.
+double known_part(double information) {
+  return information / (information + calibration::kPriorInformation);
+}
+
+double common_sigma_rad(const Eigen::Matrix<double, kBeamErrors, kBeamErrors>& information) {
+  const Eigen::Matrix3d all =
+      information + calibration::kPriorInformation * Eigen::Matrix3d::Identity();
+  const double variance = all.inverse()(2, 2);
+  return variance > 0.0 ? std::sqrt(variance) : sigma_of(0.0);
+}
+
+Eigen::Vector3d applied(const BeamCorrection& correction) {
+  const Eigen::Vector2d& eccentricity_rad = correction.eccentricity_rad;
+  return {eccentricity_rad[0], eccentricity_rad[1], correction.common_elevation_rad};
+}
+
 }  // namespace
 
 void BeamCalibration::resume(const BeamEstimate& kept) {
@@ -36,17 +67,29 @@ void BeamCalibration::resume(const BeamEstimate& kept) {
   correction_.elevation_rad = kept.elevation_rad;
   std::transform(kept.elevation_sigma_rad.begin(), kept.elevation_sigma_rad.end(),
                  elevation_information_.begin(), kept_information);
-  if (!is_applied(largest_azimuth_rad(kept))) return;
-  correction_.eccentricity_rad = {kept.eccentricity_rad[0], kept.eccentricity_rad[1]};
-  const double information = kept_information(kept.eccentricity_sigma_rad);
-  eccentricity_information_ = information * Eigen::Matrix2d::Identity();
-  eccentricity_sum_ = (information + calibration::kPriorInformation) * correction_.eccentricity_rad;
+  Errors information = Errors::Zero();
+  if (is_applied(largest_azimuth_rad(kept))) {
+    correction_.eccentricity_rad = {kept.eccentricity_rad[0], kept.eccentricity_rad[1]};
+    information.head<2>().setConstant(kept_information(kept.eccentricity_sigma_rad));
+  }
+  if (is_plausible(kept.common_elevation_rad)) {
+    correction_.common_elevation_rad = kept.common_elevation_rad;
+    information[2] = kept_information(kept.common_elevation_sigma_rad);
+  }
+  information_ = information.asDiagonal();
+  sum_ = (information.array() + calibration::kPriorInformation) * applied(correction_).array();
 }
 
 void BeamCalibration::begin_scan(const BeamTable& beams) {
   if (kept_ring_count_ != 0 && kept_ring_count_ != beams.ring_count) *this = {};
   kept_ring_count_ = 0;
   ring_count_ = beams.ring_count;
+  for (std::size_t ring = 0; ring < static_cast<std::size_t>(ring_count_); ++ring) {
+    correction_.common_part[ring] =
+        static_cast<float>(known_part(elevation_information_[ring]) *
+                           common_part_of(static_cast<double>(beams.elevation_rad[ring])));
+  }
+  sensitivity_.correction = correction_;
 }
 
 BeamEstimate BeamCalibration::estimate() const {
@@ -57,80 +100,129 @@ BeamEstimate BeamCalibration::estimate() const {
                  out.elevation_sigma_rad.begin(), sigma_of);
   out.eccentricity_rad = {correction_.eccentricity_rad[0], correction_.eccentricity_rad[1]};
   // One number for both: that of the direction seen worse. Nothing is known of what is not applied.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> by_information(eccentricity_information_);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> by_information(
+      information_.topLeftCorner<2, 2>());
   const bool is_applied = !correction_.eccentricity_rad.isZero(0.0);
   out.eccentricity_sigma_rad =
       sigma_of(is_applied ? std::max(by_information.eigenvalues()[0], 0.0) : 0.0);
+  out.common_elevation_rad = correction_.common_elevation_rad;
+  out.common_elevation_sigma_rad =
+      out.common_elevation_rad != 0.0 ? common_sigma_rad(information_) : sigma_of(0.0);
   return out;
 }
 
 bool BeamCalibration::is_due(const Eigen::Vector3d& place_m) const {
-  return !last_place_m_ || (place_m - *last_place_m_).norm() > calibration::kApart_m;
+  const Eigen::Vector3d last_m = last_place_m_.value_or(Eigen::Vector3d::Zero());
+  return (place_m - last_m).norm() > calibration::kApart_m;
 }
 
 void BeamCalibration::observe(const BeamEquations& scan, const BeamTable& beams,
                               const Eigen::Vector3d& place_m) {
   last_place_m_ = place_m;
+  if (!scan.path.is_finite()) return;
   observe_elevations(scan, beams);
-  subtract_common_line(beams);
-  observe_eccentricity(scan);
+  subtract_unseen(beams);
+  observe_path(scan, place_m);
+}
+
+std::optional<PoseSensitivity> BeamCalibration::take_large() {
+  const float largest_m = sensitivity_.pose.moved.bottomRows<3>().cwiseAbs().maxCoeff();
+  if (!(largest_m >= calibration::kRebase_m)) return std::nullopt;
+  return std::exchange(sensitivity_.pose, {});
 }
 
 void BeamCalibration::begin_map() {
-  sensitivity_.setZero();
+  sensitivity_.pose = {};
   last_place_m_.reset();
 }
 
 void BeamCalibration::observe_elevations(const BeamEquations& scan, const BeamTable& beams) {
   for (std::size_t ring = 0; ring < static_cast<std::size_t>(beams.ring_count); ++ring) {
-    elevation_information_[ring] *= 1.0 - 1.0 / calibration::kMemory;
-    elevation_information_[ring] += calibration::kWeight * scan.elevation_information[ring];
+    elevation_information_[ring] *= kKept;
+    elevation_information_[ring] += calibration::kWeight * scan.rings[ring].information;
     correction_.elevation_rad[ring] +=
-        calibration::kWeight * scan.elevation_gradient[ring] /
+        calibration::kWeight * scan.rings[ring].gradient /
         (elevation_information_[ring] + calibration::kPriorInformation);
   }
 }
 
-/// Subtracts a line fitted over the elevations, weighted by information. A ring without information
+/// Subtracts what the residuals do not show, weighted by information. A ring without information
 /// has no part in the fit and keeps its zero.
-void BeamCalibration::subtract_common_line(const BeamTable& beams) {
+void BeamCalibration::subtract_unseen(const BeamTable& beams) {
   const auto rings = static_cast<std::size_t>(beams.ring_count);
   Eigen::Matrix2d H = Eigen::Matrix2d::Identity();  // invertible without any information
   Eigen::Vector2d b = Eigen::Vector2d::Zero();
   const auto row = [&](std::size_t ring) {
-    return Eigen::Vector2d(1.0, static_cast<double>(beams.elevation_rad[ring]));
+    const auto elevation_rad = static_cast<double>(beams.elevation_rad[ring]);
+    return Eigen::Vector2d(common_part_of(elevation_rad), elevation_rad);
   };
   for (std::size_t ring = 0; ring < rings; ++ring) {
     H += elevation_information_[ring] * row(ring) * row(ring).transpose();
     b += elevation_information_[ring] * correction_.elevation_rad[ring] * row(ring);
   }
-  const Eigen::Vector2d common = H.ldlt().solve(b);
+  const Eigen::Vector2d unseen = H.ldlt().solve(b);
   for (std::size_t ring = 0; ring < rings; ++ring) {
-    const double known = elevation_information_[ring] /
-                         (elevation_information_[ring] + calibration::kPriorInformation);
-    correction_.elevation_rad[ring] -= known * row(ring).dot(common);
+    correction_.elevation_rad[ring] -=
+        known_part(elevation_information_[ring]) * row(ring).dot(unseen);
   }
 }
 
 /// The pose is eliminated by the Schur complement.
-void BeamCalibration::observe_eccentricity(const BeamEquations& scan) {
+void BeamCalibration::observe_path(const BeamEquations& scan, const Eigen::Vector3d& place_m) {
+  const PathEquations& path = scan.path;
   // In a corridor a direction may have no information: 1 sigma of 1 m and 1 rad.
-  const Eigen::LDLT<Matrix6d> of_pose(scan.pose_information + Matrix6d::Identity());
-  const PoseSensitivity followed = of_pose.solve(scan.cross_information);
+  const Eigen::LDLT<Matrix6d> of_pose(path.pose_information + Matrix6d::Identity());
+  const PathEquations::Cross followed = of_pose.solve(path.cross_information);
   if (of_pose.info() != Eigen::Success || !followed.allFinite()) return;
-  sensitivity_ = -followed;
-  const Eigen::Matrix2d H =
-      scan.eccentricity_information - scan.cross_information.transpose() * followed;
-  const Eigen::Vector2d b = scan.eccentricity_gradient - followed.transpose() * scan.pose_gradient;
-  const double kept = 1.0 - 1.0 / calibration::kMemory;
-  eccentricity_information_ = kept * eccentricity_information_ + calibration::kWeight * H;
-  eccentricity_sum_ =
-      kept * eccentricity_sum_ + calibration::kWeight * (b + H * correction_.eccentricity_rad);
-  const Eigen::Matrix2d all =
-      eccentricity_information_ + calibration::kPriorInformation * Eigen::Matrix2d::Identity();
-  const Eigen::Vector2d found_rad = all.ldlt().solve(eccentricity_sum_);
-  const bool applies = is_applied(found_rad.norm());
-  correction_.eccentricity_rad = applies ? found_rad : Eigen::Vector2d::Zero();
+  sensitivity_.pose = sensitivity_.pose.told_at(place_m);
+  sensitivity_.pose.moved -= followed.cast<float>();
+  PathEquations of_errors;
+  of_errors.information = path.information - path.cross_information.transpose() * followed;
+  of_errors.gradient = path.gradient - followed.transpose() * path.pose_gradient;
+  leave_out_rings(scan.rings, followed, of_pose.solve(path.pose_gradient), of_errors);
+  add_path(of_errors);
+  correct_path();
+}
+
+/// Takes the ring's mean residual out of every residual: a regression, whose coefficients are those
+/// of all scans so far. `followed` and `moved`: how the pose moves with the errors and by itself.
+void BeamCalibration::leave_out_rings(const std::array<RingEquations, kMaxRings>& rings,
+                                      const PathEquations::Cross& followed, const Vector6d& moved,
+                                      PathEquations& of_errors) {
+  for (std::size_t ring = 0; ring < static_cast<std::size_t>(ring_count_); ++ring) {
+    const RingEquations& one = rings[ring];
+    const auto by_errors = (one.by_errors - one.by_pose * followed).eval();
+    const double gradient = one.gradient - one.by_pose.dot(moved);
+    RingMean& mean = ring_means_[ring];
+    mean.by_errors = kKept * mean.by_errors + by_errors.head<kBeamErrors>();
+    mean.information = kKept * mean.information + one.curvature;
+    const auto per_ring = (mean.by_errors / (mean.information + kUnweightedPrior)).eval();
+    of_errors.information.topRows<kBeamErrors>() -= per_ring.transpose() * by_errors;
+    of_errors.gradient.head<kBeamErrors>() -= per_ring.transpose() * gradient;
+  }
+}
+
+void BeamCalibration::add_path(const PathEquations& path) {
+  const Information H = path.information.topLeftCorner<kBeamErrors, kBeamErrors>();
+  // The last column is what the corrections have done: to add it gives the residuals without them.
+  const Errors b =
+      path.gradient.head<kBeamErrors>() + path.information.topRightCorner<kBeamErrors, 1>();
+  information_ = kKept * information_ + calibration::kWeight * 0.5 * (H + H.transpose());
+  sum_ = kKept * sum_ + calibration::kWeight * b;
+}
+
+void BeamCalibration::correct_path() {
+  const Information all = information_ + calibration::kPriorInformation * Information::Identity();
+  const Eigen::LDLT<Information> of_errors(all);
+  if (of_errors.info() != Eigen::Success || !of_errors.isPositive()) return;
+  const Errors found_rad = of_errors.solve(sum_);
+  const bool applies = is_applied(found_rad.head<2>().norm());
+  correction_.eccentricity_rad = applies ? found_rad.head<2>().eval() : Eigen::Vector2d::Zero();
+  double& common_rad = correction_.common_elevation_rad;
+  const double least_sigmas =
+      common_rad == 0.0 ? calibration::kCertainSigmas : calibration::kUncertainSigmas;
+  const bool is_certain = std::abs(found_rad[2]) > least_sigmas * common_sigma_rad(information_);
+  common_rad = is_certain && is_plausible(found_rad[2]) ? found_rad[2] : 0.0;
 }
 
 }  // namespace lilo::core

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/calibration/beam_correction.hpp"
+#include "core/calibration/beam_equations.hpp"
 #include "core/calibration/beam_estimate.hpp"
-#include "core/pose.hpp"
 
 #include <Eigen/Core>
 
@@ -13,35 +13,20 @@
 /// Estimation of beam errors from the residuals of the map, while driving.
 namespace lilo::core {
 
-/// How a pose depends on the eccentricity: rotation and translation (rows, odometry axes) per
-/// radian of its cosine and sine.
-using PoseSensitivity = Eigen::Matrix<double, 6, 2>;
-
-/// Normal equations of the beams' errors, from one scan that was aligned with the map. Residuals
-/// are weighted as in the alignment.
-struct BeamEquations {
-  /// Of the elevation of each ring, from ground alone, at the pose of the alignment.
-  std::array<double, kMaxRings> elevation_gradient{}, elevation_information{};
-  /// Of pose and eccentricity together: the blocks of H and b of H x = b.
-  Matrix6d pose_information = Matrix6d::Zero();
-  PoseSensitivity cross_information = PoseSensitivity::Zero();
-  Eigen::Matrix2d eccentricity_information = Eigen::Matrix2d::Zero();
-  Vector6d pose_gradient = Vector6d::Zero();
-  Eigen::Vector2d eccentricity_gradient = Eigen::Vector2d::Zero();
-};
-
-/// Estimates the differences between the elevations of the rings, and the eccentricity of the
-/// encoder.
+/// Estimates the errors of the elevations and the eccentricity of the encoder.
 ///
 /// Rings: the elevation of a ring follows the mean residual of its ground returns against the map,
-/// which holds the returns of all rings. These residuals do not show an error that all rings share:
-/// the same error of all elevations turns level ground into a cone, and an error that grows with
-/// the elevation lowers the ground. So a line fitted over the elevations is subtracted.
+/// which holds the returns of all rings. Two errors that all rings share are not in these
+/// residuals: one that grows with the elevation lowers the ground, and one in inverse proportion
+/// to it bends the path (common_part_of). So a fit of both over the elevations is subtracted. The
+/// first does no harm.
 ///
-/// Eccentricity: the points of the map were measured with the same encoder, and its error bends the
-/// path. So every point that enters the map brings its derivative by the eccentricity, with that of
-/// its pose. The derivative of a residual is that of its point minus that of its cell. This is
-/// Gauss-Newton over all scans, in which each pose is a function of the eccentricity.
+/// The errors that bend the path, the eccentricity and the common error of the elevations: the
+/// points of the map were measured with the same beams. So every point that enters the map brings
+/// its derivative by these errors, with that of its pose. The derivative of a residual is that of
+/// its point minus that of its cell. This is Gauss-Newton over all scans, in which each pose is a
+/// function of the errors. What a ring's residuals have in common is left out, as errors of single
+/// rings would be taken for these.
 ///
 /// Not thread-safe; no allocation.
 class BeamCalibration {
@@ -54,29 +39,46 @@ class BeamCalibration {
   /// sensor with another number of rings. Of some recordings every scan has its own number.
   void begin_scan(const BeamTable& beams);
   [[nodiscard]] BeamEstimate estimate() const;
-  /// Of the last scan that was observed.
-  [[nodiscard]] const PoseSensitivity& sensitivity() const { return sensitivity_; }
-  /// Whether the sensor has moved far enough since the last observation. At the same place the
-  /// residuals are the same, and would count again.
+  /// Of the scan begun last. Its pose is that of the last scan that was observed.
+  [[nodiscard]] const ScanSensitivity& sensitivity() const { return sensitivity_; }
+  /// Whether the sensor has moved far enough since the last observation, or from the origin of the
+  /// map. At the same place the residuals are the same, and would count again.
   [[nodiscard]] bool is_due(const Eigen::Vector3d& place_m) const;
   /// The scan ended at `place_m` (odometry frame).
   void observe(const BeamEquations& scan, const BeamTable& beams, const Eigen::Vector3d& place_m);
-  /// Poses on a new map do not depend on the eccentricity yet. The correction stays.
+  /// On a long way sensitivities grow until floats do not hold their differences (kRebase_m). Then
+  /// gives the rigid motion that the caller is to subtract from the map. It changes no difference.
+  [[nodiscard]] std::optional<PoseSensitivity> take_large();
+  /// Poses on a new map do not depend on the errors yet. The correction stays.
   void begin_map();
 
  private:
+  /// The derivative of a ring's mean residual by the errors, times the information of the mean.
+  struct RingMean {
+    Eigen::Matrix<double, 1, kBeamErrors> by_errors = Eigen::Matrix<double, 1, kBeamErrors>::Zero();
+    double information = 0.0;
+  };
+  using Information = Eigen::Matrix<double, kBeamErrors, kBeamErrors>;
+  using Errors = Eigen::Matrix<double, kBeamErrors, 1>;
+
   void observe_elevations(const BeamEquations& scan, const BeamTable& beams);
-  void subtract_common_line(const BeamTable& beams);
-  void observe_eccentricity(const BeamEquations& scan);
+  void subtract_unseen(const BeamTable& beams);
+  void observe_path(const BeamEquations& scan, const Eigen::Vector3d& place_m);
+  void leave_out_rings(const std::array<RingEquations, kMaxRings>& rings,
+                       const PathEquations::Cross& followed, const Vector6d& moved,
+                       PathEquations& of_errors);
+  void add_path(const PathEquations& path);
+  void correct_path();
 
   int ring_count_ = 0;       // of the last scan; 0: none yet
   int kept_ring_count_ = 0;  // of what is resumed; 0: nothing, or it was looked at
   BeamCorrection correction_;
   std::array<double, kMaxRings> elevation_information_{};
-  /// H and b of H x = b over all observations, x the whole eccentricity.
-  Eigen::Matrix2d eccentricity_information_ = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d eccentricity_sum_ = Eigen::Vector2d::Zero();
-  PoseSensitivity sensitivity_ = PoseSensitivity::Zero();
+  /// H and b of H x = b over all observations, x the errors without any correction.
+  Information information_ = Information::Zero();
+  Errors sum_ = Errors::Zero();
+  std::array<RingMean, kMaxRings> ring_means_{};
+  ScanSensitivity sensitivity_;
   std::optional<Eigen::Vector3d> last_place_m_;
 };
 

@@ -18,13 +18,18 @@ struct BeamEstimate {
   /// To be added to an azimuth: [0] * cos(azimuth) + [1] * sin(azimuth).
   std::array<double, 2> eccentricity_rad{};
   double eccentricity_sigma_rad = 0.0;
+  /// Of a ring 5 degrees below the horizon. To be added to each ring that saw the ground, in
+  /// inverse proportion to its elevation.
+  double common_elevation_rad = 0.0;
+  double common_elevation_sigma_rad = 0.0;
 
   bool operator==(const BeamEstimate&) const = default;
 };
 
-/// The largest correction of an elevation, and of an azimuth.
+/// The largest correction of an elevation, and of an azimuth. What the elevations have in common
+/// counts as at 5 degrees.
 inline double largest_elevation_rad(const BeamEstimate& beams) {
-  double largest = 0.0;
+  double largest = std::abs(beams.common_elevation_rad);
   for (const double rad : beams.elevation_rad) largest = std::max(largest, std::abs(rad));
   return largest;
 }

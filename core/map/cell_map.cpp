@@ -34,7 +34,11 @@ CellMap::CellMap(const CellMapConfig& config)
   cells_.reserve(capacity);
   sums_.reserve(capacity);
   if (config.one_sided) rays_.assign(capacity, Eigen::Vector3f::Zero());
-  if (config.with_sensitivity) sensitivities_.assign(capacity, Sensitivity::Zero());
+  first_row_ = config.level ? 2 : 0;
+  if (config.with_sensitivity) {
+    sensitivity_rows_.assign(capacity * static_cast<std::size_t>(3 - first_row_),
+                             SensitivityRow::Zero());
+  }
 }
 
 std::int32_t CellMap::make(const CellKey& key) {
@@ -53,7 +57,9 @@ std::int32_t CellMap::make(const CellKey& key) {
     sums_[static_cast<std::size_t>(at)] = Moments{};
   }
   if (config_.one_sided) rays_[static_cast<std::size_t>(at)].setZero();
-  if (config_.with_sensitivity) sensitivities_[static_cast<std::size_t>(at)].setZero();
+  for (int row = first_row_; row < 3 && config_.with_sensitivity; ++row) {
+    sensitivity_row(static_cast<std::size_t>(at), row).setZero();
+  }
   table_.insert(key.bucket, CellTable::tag_of(key.index), at);
   ++used_;
   cells_[static_cast<std::size_t>(at)].index = key.index;
@@ -124,18 +130,38 @@ Eigen::Vector3f CellMap::rays_around(std::span<const Neighbour> neighbours) cons
   return sum;
 }
 
-Sensitivity CellMap::sensitivity_around(std::int32_t at) const {
-  Sensitivity sum = Sensitivity::Zero();
-  if (!config_.with_sensitivity) return sum;
+CellMap::MeanSensitivity CellMap::sensitivity_around(std::int32_t at) const {
+  MeanSensitivity around;
+  if (!config_.with_sensitivity) return around;
+  const CellIndex& index = cells_[static_cast<std::size_t>(at)].index;
   Neighbours neighbours;
-  const std::size_t n = neighbours_of(cells_[static_cast<std::size_t>(at)].index, neighbours);
+  const std::size_t n = neighbours_of(index, neighbours);
   float count = 0.0F;
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto one = static_cast<std::size_t>(neighbours[k].at);
-    sum += sensitivities_[one];
+  Eigen::Vector3f sum_m = Eigen::Vector3f::Zero();
+  for (const Neighbour& o : std::span(neighbours).first(n)) {
+    const auto one = static_cast<std::size_t>(o.at);
+    for (int row = first_row_; row < 3; ++row) {
+      around.sensitivity.row(row) += sensitivity_row(one, row);
+    }
     count += count_of(sums_[one]);
+    sum_m += points_of(sums_[one]) + count_of(sums_[one]) * Eigen::Vector3f(o.x_m, o.y_m, o.z_m);
   }
-  return sum / count;
+  around.sensitivity /= count;
+  around.mean_m = center_of(index) + (sum_m / count).cast<double>();
+  return around;
+}
+
+void CellMap::subtract_sensitivity(const PoseSensitivity& rigid) {
+  if (!config_.with_sensitivity) return;
+  for (const CellTable::Slot& slot : table_.slots()) {
+    if (slot.at == kNone) continue;
+    const auto at = static_cast<std::size_t>(slot.at);
+    const float count = count_of(sums_[at]);
+    const Eigen::Vector3f own_m = points_of(sums_[at]) / count;
+    const Eigen::Vector3d mean_m = center_of(cells_[at].index) + own_m.cast<double>();
+    const Sensitivity moved = count * rigid.at(mean_m);
+    for (int row = first_row_; row < 3; ++row) sensitivity_row(at, row) -= moved.row(row);
+  }
 }
 
 void CellMap::fit(Cell& cell) const {

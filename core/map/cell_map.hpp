@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/calibration/sensitivity.hpp"
 #include "core/constants.hpp"
 #include "core/map/cell_table.hpp"
 #include "core/map/moments.hpp"
@@ -11,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 /// A map: points summed up in small cubic cells of a hash table.
@@ -36,7 +38,7 @@ struct CellMapConfig {
   /// Whether a surface is matched only from the side from which it was seen. The two faces of a
   /// thin wall lie in one cell, and a sensor that comes through the door sees the other one.
   bool one_sided = false;
-  /// Whether the sensitivities of the points are averaged as well.
+  /// Whether the sensitivities of the points are averaged as well; of ground only the height's.
   bool with_sensitivity = false;
   /// The most cells. Points that need another one are left out and counted.
   int capacity = DefaultConfig{}.map_cells;
@@ -115,8 +117,15 @@ class CellMap {
             .information = &cell.information,
             .is_known = true};
   }
-  /// Mean of the points that match() answers with: all those around. Zero without sensitivities.
-  [[nodiscard]] Sensitivity sensitivity_around(std::int32_t at) const;
+  /// Subtracts the rigid motion from the sensitivity of every point.
+  void subtract_sensitivity(const PoseSensitivity& rigid);
+  /// Of the points that match() answers with, all those around: mean sensitivity, zero where it is
+  /// not kept, and mean.
+  struct MeanSensitivity {
+    Sensitivity sensitivity = Sensitivity::Zero();
+    Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
+  };
+  [[nodiscard]] MeanSensitivity sensitivity_around(std::int32_t at) const;
   /// The cell there, made if missing; kNone where there is no room.
   std::int32_t find_or_insert(const CellKey& key) {
     const std::int32_t at = table_.find(key.bucket, CellTable::tag_of(key.index));
@@ -124,7 +133,7 @@ class CellMap {
     prefetch_sums(at);
     const auto cell = static_cast<std::size_t>(at);
     if (config_.one_sided) __builtin_prefetch(&rays_[cell]);
-    if (config_.with_sensitivity) __builtin_prefetch(&sensitivities_[cell]);
+    if (config_.with_sensitivity) __builtin_prefetch(&sensitivity_row(cell, 2));
     return at;
   }
   void add(std::int32_t at, const CellKey& key, const Eigen::Vector3d& point_m,
@@ -144,8 +153,10 @@ class CellMap {
       rays = kept * rays + ray;
     }
     if (!config_.with_sensitivity) return;
-    Sensitivity& sum = sensitivities_[static_cast<std::size_t>(at)];
-    sum = kept * sum + sensitivity;
+    for (int row = first_row_; row < 3; ++row) {
+      SensitivityRow& sum = sensitivity_row(static_cast<std::size_t>(at), row);
+      sum = kept * sum + sensitivity.row(row);
+    }
   }
 
   void end_keyframe() { ++keyframe_; }
@@ -223,6 +234,13 @@ class CellMap {
   [[nodiscard]] Eigen::Vector3f rays_around(std::span<const Neighbour> neighbours) const;
   void fit(Cell& cell) const;
   void remove(std::size_t slot);
+  [[nodiscard]] const SensitivityRow& sensitivity_row(std::size_t at, int row) const {
+    return sensitivity_rows_[at * static_cast<std::size_t>(3 - first_row_) +
+                             static_cast<std::size_t>(row - first_row_)];
+  }
+  [[nodiscard]] SensitivityRow& sensitivity_row(std::size_t at, int row) {
+    return const_cast<SensitivityRow&>(std::as_const(*this).sensitivity_row(at, row));
+  }
   /// The part of the radius of forget_beyond() for which there is room.
   [[nodiscard]] double radius_part() const;
   /// A removed cell has no place; the number of the next one stands there.
@@ -233,10 +251,11 @@ class CellMap {
   float kept_;  // part of a full cell's sums that one more point leaves
   CellTable table_;
   std::vector<Cell> cells_;
-  std::vector<Moments> sums_;               // what insert() sums, from the cell's centre
-  std::vector<Eigen::Vector3f> rays_;       // sums of unit vectors, where sides count
-  std::vector<Sensitivity> sensitivities_;  // sums as well, where they are asked for
-  std::int32_t free_ = kNone;               // the cell removed last; it names the one before
+  std::vector<Moments> sums_;                     // what insert() sums, from the cell's centre
+  std::vector<Eigen::Vector3f> rays_;             // sums of unit vectors, where sides count
+  std::vector<SensitivityRow> sensitivity_rows_;  // sums as well, where they are asked for
+  int first_row_ = 0;                             // of those kept
+  std::int32_t free_ = kNone;                     // the cell removed last; it names the one before
   std::size_t sweep_ = 0;
   std::uint32_t keyframe_ = 1;
   int used_ = 0;

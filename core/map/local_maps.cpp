@@ -61,6 +61,12 @@ void LocalMaps::forget_beyond(const Eigen::Vector3d& center_m, double radius_m) 
   }
 }
 
+void LocalMaps::subtract_sensitivity(const PoseSensitivity& rigid) {
+  for (std::vector<CellMap>& level : levels_) {
+    for (CellMap& map : level) map.subtract_sensitivity(rigid);
+  }
+}
+
 void LocalMaps::clear() {
   for (std::vector<CellMap>& level : levels_) {
     for (CellMap& map : level) map.clear();

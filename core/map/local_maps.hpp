@@ -63,6 +63,8 @@ class LocalMaps {
   /// Forgets cells farther than `radius_m` from `center_m`, half cells farther than
   /// map::kHalfCellRadius_m.
   void forget_beyond(const Eigen::Vector3d& center_m, double radius_m);
+  /// Subtracts the rigid motion from the sensitivity of every point.
+  void subtract_sensitivity(const PoseSensitivity& rigid);
   void clear();
   [[nodiscard]] int size() const;               ///< cells
   [[nodiscard]] std::uint64_t refused() const;  ///< points that found no room

@@ -24,9 +24,6 @@ inline Symmetric outer(const Eigen::Vector3f& v) {
   return o;
 }
 
-/// How a point moves (m) per radian of the eccentricity's cosine and sine.
-using Sensitivity = Eigen::Matrix<float, 3, 2>;
-
 /// The number of points, the sums of x y z and those of xx xy xz yy yz zz. They are one array, so
 /// that the compiler sums four at a time.
 using Moments = std::array<float, 1 + 3 + 6>;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/calibration/sensitivity.hpp"
 #include "core/constants.hpp"
 #include "core/estimate.hpp"
 #include "core/pose.hpp"
@@ -66,8 +67,7 @@ struct Sampled {
   [[nodiscard]] Eigen::Vector3f turn(float s, const Eigen::Vector3f& p) const {
     return rotation[instant_of(s)] * p;
   }
-  [[nodiscard]] Eigen::Matrix<float, 3, 2> turn_columns(float s,
-                                                        const Eigen::Matrix<float, 3, 2>& p) const {
+  [[nodiscard]] Sensitivity turn_columns(float s, const Sensitivity& p) const {
     return rotation[instant_of(s)] * p;
   }
   [[nodiscard]] Eigen::Vector3d origin_m(float s) const {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/calibration/beam_calibration.hpp"
+#include "core/calibration/beam_correction.hpp"
+#include "core/calibration/beam_equations.hpp"
 #include "core/constants.hpp"
 #include "core/feature.hpp"
 #include "core/map/local_maps.hpp"
@@ -70,7 +71,7 @@ class Solver {
 
   /// What the residuals of a solution say of the beams. The map is as it was for solve().
   BeamEquations beam_equations(const std::vector<Feature>& features, LocalMaps& maps,
-                               const Trajectory& trajectory);
+                               const Trajectory& trajectory, const ScanSensitivity& sensitivity);
 
  private:
   static constexpr std::size_t kAtATime = 32;
@@ -105,7 +106,8 @@ class Solver {
                   Levels levels, Solution& solution);
   std::size_t look_up(const std::vector<Feature>& features, std::size_t first, std::size_t stride);
   static void match(std::span<Correspondence> some, LocalMaps& maps, Levels levels, Sides sides);
-  void add_beam_residual(const Correspondence& one, LocalMaps& maps, BeamEquations& sums) const;
+  void add_beam_residual(const Correspondence& one, LocalMaps& maps,
+                         const ScanSensitivity& sensitivity, BeamEquations& sums) const;
   void add_residual(const Correspondence& one, float kernel_scale, float data_weight, Sums& sums);
   Vector6d design_effect(const Unknowns& step, const Prior& prior) const;
   Equations data_equations(const Prior& prior, Matrix6d& data_information) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/constants.hpp"
 #include "core/registration/solver.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace lilo::core {
@@ -18,7 +20,8 @@ Eigen::Matrix<float, 3, 6> moved_by_pose(const Eigen::Vector3f& p) {
 }  // namespace
 
 BeamEquations Solver::beam_equations(const std::vector<Feature>& features, LocalMaps& maps,
-                                     const Trajectory& trajectory) {
+                                     const Trajectory& trajectory,
+                                     const ScanSensitivity& sensitivity) {
   BeamEquations sums;
   sample(trajectory, sampled_);
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
@@ -27,38 +30,51 @@ BeamEquations Solver::beam_equations(const std::vector<Feature>& features, Local
     const std::span some = std::span(correspondences_).first(n);
     match(some, maps, Levels::from_whole, Sides::seen);
     for (const Correspondence& one : some) {
-      if (one.match.information != nullptr) add_beam_residual(one, maps, sums);
+      if (one.match.information != nullptr && one.level == LocalMaps::kWhole)
+        add_beam_residual(one, maps, sensitivity, sums);
     }
   }
   return sums;
 }
 
 void Solver::add_beam_residual(const Correspondence& one, LocalMaps& maps,
-                               BeamEquations& sums) const {
+                               const ScanSensitivity& sensitivity, BeamEquations& sums) const {
   const Feature& f = *one.feature;
   const bool ground = f.kind == FeatureKind::ground;
   const Eigen::Vector3f& r = one.match.from_mean_m;
   const Eigen::Matrix3f O = matrix_of(*one.match.information);
   const float kernel = ground ? config_.ground_kernel : config_.structure_kernel;
-  const float robust = 1.0F / (1.0F + r.dot(O * r) / (kernel * kernel));
-  const Eigen::Matrix3f wO = robust * O;
-  const Eigen::Vector3f wOr = wO * r;
-  if (ground) {
-    const Eigen::Vector3f up = sampled_.turn(f.s, moved_by_elevation(f));
-    sums.elevation_gradient[f.ring] -= static_cast<double>(up.dot(wOr));
-    sums.elevation_information[f.ring] += static_cast<double>(up.dot(wO * up));
-  }
-  // Only whole cells have sensitivities.
-  if (one.level != LocalMaps::kWhole) return;
+  const Eigen::Vector3f Or = O * r;
+  const float u = r.dot(Or) / (kernel * kernel);
+  const float robust = 1.0F / (1.0F + u);
+  const Eigen::Vector3f wOr = robust * Or;
+  // Robust weights are the slope of the kernel. Along the residual its curvature is less, and
+  // beyond u = 1 negative: with weights alone the errors would be found too small by half.
+  const float flat = 2.0F * robust / std::max(1.0F + u, 2.0F * u) / (kernel * kernel);
+  const Eigen::Matrix3f wO = robust * O - flat * Or * Or.transpose();
   const Eigen::Matrix<float, 3, 6> J = moved_by_pose(one.turned_m);
-  sums.pose_information += (J.transpose() * wO * J).cast<double>();
-  sums.pose_gradient -= (J.transpose() * wOr).cast<double>();
-  if (ground) return;  // as in make_cells(): it does not show the eccentricity
-  const Sensitivity by_cell = maps.at(LocalMaps::kWhole, f.kind).sensitivity_around(one.cell);
-  const Sensitivity D = sampled_.turn_columns(f.s, moved_by_eccentricity(f)) - by_cell;
-  sums.cross_information += (J.transpose() * wO * D).cast<double>();
-  sums.eccentricity_information += (D.transpose() * wO * D).cast<double>();
-  sums.eccentricity_gradient -= (D.transpose() * wOr).cast<double>();
+  // A rigid motion of the whole path turns the surface of the cell as well. So it counts at the
+  // mean of the cell, not at the point.
+  const auto cell = maps.at(one.level, f.kind).sensitivity_around(one.cell);
+  Sensitivity D = sampled_.turn_columns(f.s, moved_by_beams(f, sensitivity.correction)) +
+                  sensitivity.pose.at(cell.mean_m) - cell.sensitivity;
+  if (ground) D.topRows<2>().setZero();  // the map has its height alone
+  const Eigen::Matrix<float, 3, 6> wOJ = wO * J;
+  const Sensitivity wOD = wO * D;
+  PathEquations& path = sums.path;
+  path.pose_information += (J.transpose() * wOJ).cast<double>();
+  path.pose_gradient -= (J.transpose() * wOr).cast<double>();
+  path.cross_information += (J.transpose() * wOD).cast<double>();
+  path.information += (D.transpose() * wOD).cast<double>();
+  path.gradient -= (D.transpose() * wOr).cast<double>();
+  if (!ground) return;
+  const Eigen::Vector3f up = sampled_.turn(f.s, moved_by_elevation(f));
+  RingEquations& ring = sums.rings[f.ring];
+  ring.gradient -= static_cast<double>(up.dot(wOr));
+  ring.information += static_cast<double>(robust * up.dot(O * up));
+  ring.curvature += static_cast<double>(up.dot(wO * up));
+  ring.by_pose += (up.transpose() * wOJ).cast<double>();
+  ring.by_errors += (up.transpose() * wOD).cast<double>();
 }
 
 }  // namespace lilo::core

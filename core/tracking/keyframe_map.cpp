@@ -11,13 +11,11 @@ namespace {
 
 LocalMaps make_cells(const DefaultConfig& c) {
   const auto map = [&](FeatureKind kind, double cell_m, int capacity) {
-    // An eccentricity moves points about the vertical, which level ground does not show.
     return CellMapConfig{.cell_m = static_cast<float>(cell_m),
                          .noise_m = static_cast<float>(c.noise_m),
                          .level = kind == FeatureKind::ground,
                          .one_sided = kind == FeatureKind::structure,
-                         .with_sensitivity = c.calibrate_beams && cell_m == c.cell_m &&
-                                             kind == FeatureKind::structure,
+                         .with_sensitivity = c.calibrate_beams && cell_m == c.cell_m,
                          .capacity = capacity};
   };
   const auto level = [&](double cell_m, int capacity) {
@@ -54,7 +52,6 @@ void KeyframeMap::begin(const std::vector<Feature>& features, const Trajectory& 
   hold(features, true);
   held_.trajectory = trajectory;
   held_.finest_level = finest_level;
-  held_.sensitivity.setZero();
   insert_held();
   keyframes_ = 1;
 }
@@ -73,7 +70,6 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
   hold(scan.features, scan.with_overhead);
   held_.trajectory = scan.solution.trajectory;
   held_.end_ns = scan.timing.end_ns;
-  held_.sensitivity = scan.sensitivity;
   held_.finest_level = scan.finest_level;
   // A young map cannot wait for the next scan.
   if (keyframes_ < tracking::kYoungMap) insert_held();
@@ -100,6 +96,7 @@ void KeyframeMap::hold(const std::vector<Feature>& features, bool with_overhead)
   const Evenly evenly = keyframes_ < tracking::kYoungMap ? Evenly::in_image : Evenly::along_rings;
   thin_out(features, static_cast<std::size_t>(config_.map_features), evenly, held_.features,
            with_overhead);
+  held_.sensitivity = sensitivity_;
   held_.is_waiting = true;
 }
 
@@ -108,23 +105,26 @@ void KeyframeMap::insert_held() {
   held_.is_waiting = false;
   sample(held_.trajectory, sampled_);
   points_.clear();
-  const Eigen::Matrix<float, 6, 2> by_pose = held_.sensitivity.cast<float>();
   for (const Feature& f : held_.features) {
     const Eigen::Vector3f turned_m = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
     LocalMaps::Point point{turned_m.cast<double>() + sampled_.origin_m(f.s),
                            sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m}), f.kind};
     if (f.kind == FeatureKind::structure) point.ray = turned_m.normalized();
-    if (config_.calibrate_beams && f.kind == FeatureKind::structure) {
+    if (config_.calibrate_beams) {
       point.sensitivity =
-          sampled_.turn_columns(f.s, moved_by_eccentricity(f)) + by_pose.bottomRows<3>();
-      for (int k = 0; k < 2; ++k) {
-        point.sensitivity.col(k) += by_pose.col(k).head<3>().cross(turned_m);
-      }
+          sampled_.turn_columns(f.s, moved_by_beams(f, held_.sensitivity.correction)) +
+          held_.sensitivity.pose.at(point.point_m);
     }
     points_.push_back(point);
   }
   cells_.insert(points_, held_.finest_level);
   cells_.end_keyframe();
+}
+
+void KeyframeMap::subtract_sensitivity(const PoseSensitivity& rigid) {
+  cells_.subtract_sensitivity(rigid);
+  PoseSensitivity& held = held_.sensitivity.pose;
+  held.moved -= rigid.told_at(held.place_m).moved;
 }
 
 }  // namespace lilo::core

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/calibration/beam_calibration.hpp"
+#include "core/calibration/beam_correction.hpp"
 #include "core/map/local_maps.hpp"
 #include "core/motion/scan_timing.hpp"
 #include "core/motion/trajectory.hpp"
@@ -31,7 +31,6 @@ struct AlignedScan {
   MapUse use = MapUse::keyframe;
   std::size_t finest_level = LocalMaps::kWhole;  ///< into which its points enter
   bool with_overhead = true;                     ///< features that are is_overhead() enter too
-  PoseSensitivity sensitivity = PoseSensitivity::Zero();  ///< of its pose
 };
 
 /// The local map and how it grows: by keyframes, which enter it one scan late. A scan sees its own
@@ -60,6 +59,10 @@ class KeyframeMap {
              std::size_t finest_level);
   /// Takes the next scan. Returns whether it became a keyframe.
   bool grow(const AlignedScan& scan);
+  /// How the scans depend on the errors of the beams that become keyframes from now on.
+  void set_sensitivity(const ScanSensitivity& sensitivity) { sensitivity_ = sensitivity; }
+  /// Subtracts a rigid motion from the sensitivities of all points, and of the keyframe that waits.
+  void subtract_sensitivity(const PoseSensitivity& rigid);
 
  private:
   /// A keyframe, until the next scan has told where it ended.
@@ -67,7 +70,7 @@ class KeyframeMap {
     std::vector<Feature> features;
     Trajectory trajectory;
     std::int64_t end_ns = 0;
-    PoseSensitivity sensitivity = PoseSensitivity::Zero();
+    ScanSensitivity sensitivity;
     std::size_t finest_level = LocalMaps::kWhole;
     bool is_waiting = false;
   };
@@ -78,6 +81,7 @@ class KeyframeMap {
   DefaultConfig config_;
   LocalMaps cells_;
   Held held_;
+  ScanSensitivity sensitivity_;           // of the last scan
   Sampled sampled_;                       // of the keyframe that is inserted
   std::vector<LocalMaps::Point> points_;  // inserted after the last scan
   Pose T_odom_keyframe_;

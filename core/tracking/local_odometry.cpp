@@ -61,10 +61,9 @@ void LocalOdometry::observe_noise(const ScanTiming& scan, const Solution& soluti
 }
 
 void LocalOdometry::grow_map(const Observation& scan, const std::vector<Feature>& features,
-                             const Solution& solution, MapUse use,
-                             const PoseSensitivity& sensitivity) {
+                             const Solution& solution, MapUse use) {
   if (map_.grow({scan.timing, features, solution, state_.T_odom_sensor, use,
-                 LocalMaps::finest_of(scan.levels), scan.is_room, sensitivity})) {
+                 LocalMaps::finest_of(scan.levels), scan.is_room})) {
     uncertainty_.add_keyframe(state_, map_.keyframes());
   }
 }

@@ -65,12 +65,16 @@ class LocalOdometry {
 
   /// Adds the scan accepted last to the map, with all of its features.
   void grow_map(const Observation& scan, const std::vector<Feature>& features,
-                const Solution& solution, MapUse use,
-                const PoseSensitivity& sensitivity = PoseSensitivity::Zero());
+                const Solution& solution, MapUse use);
+  /// How scans depend on the errors of the beams, from now on.
+  void set_sensitivity(const ScanSensitivity& sensitivity) { map_.set_sensitivity(sensitivity); }
   /// Of the scan just aligned, before it enters the map.
-  BeamEquations beam_equations(const std::vector<Feature>& features, const Trajectory& trajectory) {
-    return solver_.beam_equations(features, map_.cells(), trajectory);
+  BeamEquations beam_equations(const std::vector<Feature>& features, const Trajectory& trajectory,
+                               const ScanSensitivity& sensitivity) {
+    return solver_.beam_equations(features, map_.cells(), trajectory, sensitivity);
   }
+  /// Subtracts a rigid motion from the sensitivities of the map.
+  void subtract_sensitivity(const PoseSensitivity& rigid) { map_.subtract_sensitivity(rigid); }
 
   /// Gives the map up and begins another one, whose origin is the end of the scan `first`. Returns
   /// the predicted pose of that end in the old map.

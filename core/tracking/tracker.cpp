@@ -37,6 +37,7 @@ void Tracker::resume_beams(const BeamEstimate& kept) {
 
 Estimate Tracker::align(const Scan& scan, std::vector<Feature>& features, StageHook hook) {
   calibration_.begin_scan(scan.beams);
+  local_.set_sensitivity(calibration_.sensitivity());
   if (calibrates_) calibration_.correction().apply(features);
   beams_ = scan.beams;
   // In rooms little of the floor is seen, and ceilings hold height and attitude as well. Elsewhere
@@ -71,12 +72,13 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
                      : alignment_.is_explained ? MapUse::keyframe
                                                : MapUse::end_only;
   if (use == MapUse::keyframe) calibrate();
+  local_.set_sensitivity(calibration_.sensitivity());
   // The result counts from the next scan on: the pose of this one is out.
   if (is_checked()) {
     motion_check_.observe_ambiguity(least_known_axis(alignment_.solution),
                                     alignment_.weak.count > 0);
   }
-  local_.grow_map(scan_, features, alignment_.solution, use, calibration_.sensitivity());
+  local_.grow_map(scan_, features, alignment_.solution, use);
   hook(Stage::update_map);
 }
 
@@ -86,8 +88,10 @@ void Tracker::calibrate() {
   const bool is_sure = phase_ == Phase::tracking && alignment_.solution.converged &&
                        !scan_.is_room && !motion_check_.is_ambiguous() && !session_.is_over;
   if (!calibrates_ || !is_sure || !calibration_.is_due(place_m)) return;
-  calibration_.observe(local_.beam_equations(*scan_.features, alignment_.solution.trajectory),
+  calibration_.observe(local_.beam_equations(*scan_.features, alignment_.solution.trajectory,
+                                             calibration_.sensitivity()),
                        beams_, place_m);
+  if (const auto rigid = calibration_.take_large()) local_.subtract_sensitivity(*rigid);
 }
 
 /// Gives the map up and begins another one where the prediction ends. The sensor is not where the
@@ -103,6 +107,7 @@ void Tracker::begin_map() {
               .restarts = session_.restarts};
   initializer_.clear();
   calibration_.begin_map();
+  local_.set_sensitivity(calibration_.sensitivity());
   motion_check_.clear();  // an ambiguity of the old map must not end the new session
   history_.fit = {};
   phase_ = Phase::starting;

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -31,14 +32,28 @@ void point_at(double range_m, double elevation_rad, double azimuth_rad, Point& p
   p.z_m = static_cast<float>(range_m * std::sin(elevation_rad));
 }
 
-/// The return as the sensor reports it, whose beam points a little elsewhere than it believes.
-void report_wrongly(Return& r) {
+/// The return as the sensor reports it, whose beam points so much higher and farther around than it
+/// believes.
+void report_wrongly(Return& r, double up_rad, double around_rad) {
   const Eigen::Vector3d p = Eigen::Vector3f(r.x_m, r.y_m, r.z_m).cast<double>();
   const double azimuth_rad = std::atan2(p.y(), p.x());
   const double elevation_rad = std::atan2(p.z(), p.head<2>().norm());
-  point_at(p.norm(), elevation_rad - elevation_error_rad(r.ring),
-           azimuth_rad - azimuth_error_rad(azimuth_rad), r);
+  point_at(p.norm(), elevation_rad - up_rad, azimuth_rad - around_rad, r);
   r.azimuth_rad = std::atan2(r.y_m, r.x_m);
+}
+
+void report_rightly(Return&) {}
+
+void report_wrongly(Return& r) {
+  const auto azimuth_rad = static_cast<double>(std::atan2(r.y_m, r.x_m));
+  report_wrongly(r, elevation_error_rad(r.ring), azimuth_error_rad(azimuth_rad));
+}
+
+/// The rings below the horizon are wrong in inverse proportion to their elevation.
+constexpr double kCommon_rad = -1.5 * kMrad;
+void report_as_a_paraboloid(Return& r) {
+  const auto elevation_rad = static_cast<double>(std::atan2(r.z_m, std::hypot(r.x_m, r.y_m)));
+  report_wrongly(r, elevation_rad < 0.0 ? kCommon_rad * common_part_of(elevation_rad) : 0.0, 0.0);
 }
 
 TEST(BeamCorrection, TurnsABeamUpAndAround) {
@@ -68,6 +83,52 @@ TEST(BeamCorrection, LeavesWhatLiesOnTheAxis) {
   EXPECT_EQ(features[0].z_m, 2.0F);
 }
 
+// The sum of the derivatives is the correction, to first order.
+TEST(MovedByBeams, IsTheDerivativeOfTheCorrection) {
+  BeamCorrection correction;
+  correction.eccentricity_rad = {1e-3, -0.5e-3};
+  correction.common_elevation_rad = 2e-3;
+  correction.common_part[3] = 0.7F;
+  Feature f{};
+  f.ring = 3;
+  point_at(30.0, -0.2, 2.1, f);
+  const Sensitivity moved = moved_by_beams(f, correction);
+  std::vector<Feature> corrected{f};
+  correction.apply(corrected);
+  const Eigen::Vector3f by_errors =
+      moved.leftCols<kBeamErrors>() * Eigen::Vector3f(1e-3F, -0.5e-3F, 2e-3F);
+  const Eigen::Vector3f expected(corrected[0].x_m - f.x_m, corrected[0].y_m - f.y_m,
+                                 corrected[0].z_m - f.z_m);
+  EXPECT_LT((by_errors - expected).norm(), 1e-4);
+  EXPECT_LT((moved.col(kBeamErrors) - expected).norm(), 1e-4) << "what was applied";
+  EXPECT_GT(expected.norm(), 0.03);
+}
+
+// A paraboloid: its height over the range squared is the same everywhere.
+TEST(MovedByBeams, TheCommonErrorMakesAParaboloidOfTheGround) {
+  constexpr double kHeight_m = 1.8;
+  for (const double elevation_rad : {-0.26, -0.1, -0.05}) {
+    const double range_m = kHeight_m / std::tan(-elevation_rad);
+    const double height_m = range_m * common_part_of(elevation_rad);
+    EXPECT_NEAR(height_m / (range_m * range_m), common_part_of(-1.0) / kHeight_m, 0.002);
+  }
+}
+
+TEST(PoseSensitivity, IsARigidMotion) {
+  PoseSensitivity pose;
+  pose.moved.setZero();
+  pose.moved.col(2) << 0.1F, -0.2F, 0.3F, 4.0F, 5.0F, 6.0F;
+  pose.place_m = {10.0, 20.0, 1.0};
+  const Eigen::Vector3d point_m(13.0, 18.0, 0.0);
+  const Eigen::Vector3d moved = pose.at(point_m).col(2).cast<double>();
+  const Eigen::Vector3d expected = Eigen::Vector3d(0.1, -0.2, 0.3).cross(point_m - pose.place_m) +
+                                   Eigen::Vector3d(4.0, 5.0, 6.0);
+  EXPECT_LT((moved - expected).norm(), 1e-5);
+  const PoseSensitivity elsewhere = pose.told_at({-5.0, 3.0, 2.0});
+  EXPECT_LT((elsewhere.at(point_m) - pose.at(point_m)).norm(), 1e-4);
+  EXPECT_EQ(elsewhere.moved.topRows<3>(), pose.moved.topRows<3>());
+}
+
 /// Rounds in a yard, at 5 m/s.
 class BeamCalibrationInAYard : public testing::Test {
  protected:
@@ -77,14 +138,12 @@ class BeamCalibrationInAYard : public testing::Test {
     return {so3_exp({0.0, 0.0, yaw_rad}),
             {kRadius_m * std::sin(yaw_rad), -kRadius_m * std::cos(yaw_rad), 0.0}};
   }
-  void drive(int scans, bool wrongly) {
+  void drive(int scans, void (*report)(Return&)) {
     for (int k = 0; k < scans; ++k) {
       Scan scan = test::scan_of(
           test::yard(), test::even_beams(16, -15.0, 15.0), 900,
           [&](double s) { return on_the_round(0.1 * (k + s)); }, static_cast<std::uint64_t>(k));
-      if (wrongly) {
-        for (Return& r : scan.returns) report_wrongly(r);
-      }
+      for (Return& r : scan.returns) report(r);
       std::vector<Feature>& features = image_.build(scan);
       last_ = tracker_.align(scan, features, {});
       tracker_.update_map(features, {});
@@ -97,7 +156,7 @@ class BeamCalibrationInAYard : public testing::Test {
 };
 
 TEST_F(BeamCalibrationInAYard, FindsEccentricityAndRings) {
-  drive(400, true);
+  drive(400, report_wrongly);
   ASSERT_EQ(last_.status, TrackingStatus::tracking);
   const BeamEstimate found = tracker_.beam_estimate();
   EXPECT_NEAR(found.eccentricity_rad[0], kCosine_rad, 0.3 * kMrad);
@@ -108,8 +167,16 @@ TEST_F(BeamCalibrationInAYard, FindsEccentricityAndRings) {
   }
 }
 
+TEST_F(BeamCalibrationInAYard, FindsWhatTheRingsHaveInCommon) {
+  drive(400, report_as_a_paraboloid);
+  ASSERT_EQ(last_.status, TrackingStatus::tracking);
+  const BeamEstimate found = tracker_.beam_estimate();
+  EXPECT_LT(found.common_elevation_sigma_rad, 0.3 * kMrad);
+  EXPECT_NEAR(found.common_elevation_rad, kCommon_rad, 2.0 * found.common_elevation_sigma_rad);
+}
+
 TEST_F(BeamCalibrationInAYard, ResumesWhatAnotherRunFound) {
-  drive(200, true);
+  drive(200, report_wrongly);
   const BeamEstimate found = tracker_.beam_estimate();
   Tracker next{OdometryConfig{}};
   next.resume_beams(found);
@@ -126,7 +193,7 @@ TEST_F(BeamCalibrationInAYard, DropsWhatWasFoundOfASensorWithOtherRings) {
   kept.ring_count = 64;
   kept.elevation_rad.fill(kMrad);
   tracker_.resume_beams(kept);
-  drive(1, false);
+  drive(1, report_rightly);
   EXPECT_EQ(tracker_.beam_estimate().ring_count, 16);
   EXPECT_EQ(largest_elevation_rad(tracker_.beam_estimate()), 0.0);
 }
@@ -161,11 +228,119 @@ TEST_F(BeamCalibrationInAYard, ResumesNoImplausibleEccentricity) {
   }
 }
 
+/// What one scan says of the common error of the elevations.
+BeamEquations equations_of_common(double information, double common_rad) {
+  BeamEquations scan;
+  scan.path.information.diagonal().setConstant(information);
+  scan.path.gradient[2] = information * common_rad;
+  return scan;
+}
+
+TEST(BeamCalibration, AppliesACommonErrorBeyondOneAndAHalfSigmas) {
+  BeamTable beams;
+  beams.ring_count = 16;
+  // A weight of 0.16 and the prior give 1 sigma of 0.5 mrad, and 3/4 of the error.
+  const double information = 3e6 / 0.16;
+  for (const auto& [common_mrad, applied_mrad] : {std::pair{0.9, 0.0}, {1.2, 0.9}, {-1.2, -0.9}}) {
+    BeamCalibration calibration;
+    calibration.begin_scan(beams);
+    calibration.observe(equations_of_common(information, common_mrad * kMrad), beams, {});
+    const BeamEstimate found = calibration.estimate();
+    EXPECT_NEAR(found.common_elevation_rad, applied_mrad * kMrad, 0.01 * kMrad);
+    EXPECT_NEAR(found.common_elevation_sigma_rad, (applied_mrad == 0.0 ? 1.0 : 0.5) * kMrad,
+                0.01 * kMrad);
+  }
+}
+
+TEST(BeamCalibration, ResumesTheCommonError) {
+  BeamEstimate kept;
+  kept.ring_count = 16;
+  kept.elevation_sigma_rad.fill(0.1 * kMrad);
+  kept.common_elevation_rad = 1.1 * kMrad;
+  kept.common_elevation_sigma_rad = 0.1 * kMrad;
+  BeamCalibration calibration;
+  calibration.resume(kept);
+  EXPECT_EQ(calibration.estimate().common_elevation_rad, kept.common_elevation_rad);
+  BeamTable beams;
+  beams.ring_count = 16;
+  calibration.begin_scan(beams);
+  calibration.observe(equations_of_common(0.0, 0.0), beams, {});
+  EXPECT_NEAR(calibration.estimate().common_elevation_rad, kept.common_elevation_rad, 0.01 * kMrad)
+      << "a scan that tells nothing changes nothing";
+  EXPECT_GE(calibration.estimate().common_elevation_sigma_rad, 0.38 * kMrad);
+}
+
+// It is believed to 1 sigma, less than a new one needs.
+TEST(BeamCalibration, KeepsASmallCommonError) {
+  BeamEstimate kept;
+  kept.ring_count = 16;
+  kept.elevation_sigma_rad.fill(0.1 * kMrad);
+  kept.common_elevation_rad = 0.55 * kMrad;
+  kept.common_elevation_sigma_rad = 0.1 * kMrad;
+  BeamTable beams;
+  beams.ring_count = 16;
+  BeamCalibration calibration;
+  calibration.resume(kept);
+  calibration.begin_scan(beams);
+  calibration.observe(equations_of_common(0.0, 0.0), beams, {});
+  EXPECT_NEAR(calibration.estimate().common_elevation_rad, 0.55 * kMrad, 0.01 * kMrad);
+}
+
+TEST(BeamCalibration, AppliesNoCommonErrorTooSmallOrTooLarge) {
+  for (const double common_rad : {0.4 * kMrad, 4.0 * kMrad}) {
+    BeamEstimate kept;
+    kept.ring_count = 16;
+    kept.elevation_sigma_rad.fill(0.1 * kMrad);
+    kept.common_elevation_rad = common_rad;
+    kept.common_elevation_sigma_rad = 0.1 * kMrad;
+    BeamTable beams;
+    beams.ring_count = 16;
+    BeamCalibration calibration;
+    calibration.resume(kept);
+    EXPECT_EQ(calibration.estimate().common_elevation_rad, 0.0);
+    calibration.begin_scan(beams);
+    calibration.observe(equations_of_common(1e10, common_rad), beams, {});
+    EXPECT_EQ(calibration.estimate().common_elevation_rad, 0.0);
+  }
+}
+
+TEST(BeamCalibration, ObservesNothingThatIsNotFinite) {
+  BeamTable beams;
+  beams.ring_count = 16;
+  BeamCalibration calibration;
+  calibration.begin_scan(beams);
+  BeamEquations scan = equations_of_common(1e10, kMrad);
+  scan.path.gradient[0] = std::numeric_limits<double>::quiet_NaN();
+  calibration.observe(scan, beams, {});
+  calibration.observe(equations_of_common(1e10, kMrad), beams, {});
+  EXPECT_NEAR(calibration.estimate().common_elevation_rad, kMrad, 0.01 * kMrad);
+}
+
+// The pose follows a common error by 2e5 m/rad.
+TEST(BeamCalibration, GivesALargeSensitivityToBeSubtracted) {
+  BeamTable beams;
+  beams.ring_count = 16;
+  BeamCalibration calibration;
+  calibration.begin_scan(beams);
+  EXPECT_FALSE(calibration.take_large().has_value());
+  BeamEquations scan;
+  scan.path.pose_information.setIdentity();
+  scan.path.pose_information *= 1e9;
+  scan.path.cross_information(5, 2) = -2e14;
+  const Eigen::Vector3d place_m(1.0, 2.0, 3.0);
+  calibration.observe(scan, beams, place_m);
+  const auto large = calibration.take_large();
+  ASSERT_TRUE(large.has_value());
+  EXPECT_NEAR(large->at(place_m)(2, 2), 2e5F, 1.0F);
+  EXPECT_EQ(calibration.sensitivity().pose.moved.norm(), 0.0F);
+  EXPECT_FALSE(calibration.take_large().has_value());
+}
+
 /// What one scan says of an eccentricity of which the cosine is `cosine_rad`.
 BeamEquations equations_of(double cosine_rad) {
   BeamEquations scan;
-  scan.eccentricity_information = 1e10 * Eigen::Matrix2d::Identity();
-  scan.eccentricity_gradient = {1e10 * cosine_rad, 0.0};
+  scan.path.information.diagonal().setConstant(1e10);
+  scan.path.gradient[0] = 1e10 * cosine_rad;
   return scan;
 }
 
@@ -190,7 +365,7 @@ TEST_F(BeamCalibrationInAYard, UnlearnsWhatWasFoundOfAnotherSensor) {
   kept.eccentricity_rad = {kCosine_rad, kSine_rad};
   kept.eccentricity_sigma_rad = 0.05 * kMrad;
   tracker_.resume_beams(kept);
-  drive(400, false);
+  drive(400, report_rightly);
   ASSERT_EQ(last_.status, TrackingStatus::tracking);
   EXPECT_EQ(largest_azimuth_rad(tracker_.beam_estimate()), 0.0) << "of 1.3 mrad";
   EXPECT_NEAR(tracker_.beam_estimate().elevation_rad[2], 0.0, 0.3 * kMrad);
@@ -208,10 +383,11 @@ TEST(BeamCalibration, WithoutItsKeyNothingIsResumed) {
 }
 
 TEST_F(BeamCalibrationInAYard, FindsNothingWhereBeamsAreExact) {
-  drive(400, false);
+  drive(400, report_rightly);
   ASSERT_EQ(last_.status, TrackingStatus::tracking);
   const BeamEstimate found = tracker_.beam_estimate();
   EXPECT_EQ(largest_azimuth_rad(found), 0.0);
+  EXPECT_NEAR(found.common_elevation_rad, 0.0, 0.15 * kMrad);
   for (const double error_rad : found.elevation_rad) EXPECT_NEAR(error_rad, 0.0, 0.15 * kMrad);
 }
 

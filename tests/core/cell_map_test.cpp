@@ -249,5 +249,29 @@ TEST_F(Filled, GivesTheMeanOfEveryCell) {
   EXPECT_TRUE(means.empty());
 }
 
+// Of ground the map keeps the height alone.
+TEST(CellMapSensitivity, IsTheMeanAroundWithoutWhatIsSubtracted) {
+  PoseSensitivity rigid;
+  rigid.moved.col(1) << 1.0F, 2.0F, 3.0F, 40.0F, 50.0F, 60.0F;
+  rigid.place_m = {5.0, 5.0, 5.0};
+  for (const bool level : {false, true}) {
+    CellMap map({.level = level, .with_sensitivity = true});
+    const Eigen::Vector3d a_m(0.1, 0.1, 0.1), b_m(0.6, 0.2, 0.3);
+    for (const Eigen::Vector3d& point_m : {a_m, b_m}) {
+      const CellMap::CellKey key = map.key_of(point_m);
+      map.add(map.find_or_insert(key), key, point_m, CellMap::SampleGap(Eigen::Vector3f::Zero()),
+              Eigen::Vector3f::Zero(), rigid.at(point_m));
+    }
+    const std::int32_t cell = map.cell_at(map.key_of(a_m));
+    const Sensitivity mean = 0.5F * (rigid.at(a_m) + rigid.at(b_m));
+    const Sensitivity found = map.sensitivity_around(cell).sensitivity;
+    EXPECT_LT((map.sensitivity_around(cell).mean_m - 0.5 * (a_m + b_m)).norm(), 1e-6);
+    EXPECT_LT((found.row(2) - mean.row(2)).norm(), 1e-4) << level;
+    EXPECT_LT((found.topRows<2>() - (level ? 0.0F : 1.0F) * mean.topRows<2>()).norm(), 1e-4);
+    map.subtract_sensitivity(rigid);
+    EXPECT_LT(map.sensitivity_around(cell).sensitivity.norm(), 1e-4) << level;
+  }
+}
+
 }  // namespace
 }  // namespace lilo::core
