@@ -12,7 +12,7 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 std::string row(const std::string& name, double correction_rad, double sigma_rad) {
-  return fmt::format("{:<17}{:+.3f} +- {:.3f} deg\n", name, correction_rad * kDegPerRad,
+  return fmt::format("{:<18}{:+.3f} +- {:.3f} deg\n", name, correction_rad * kDegPerRad,
                      sigma_rad * kDegPerRad);
 }
 
@@ -28,6 +28,10 @@ std::string to_json(const BeamEstimate& beams) {
   }
   for (const double rad : beams.eccentricity_rad) json["azimuth_deg"].push_back(rad * kDegPerRad);
   json["azimuth_sigma_deg"] = beams.eccentricity_sigma_rad * kDegPerRad;
+  if (beams.common_elevation_sigma_rad > 0.0) {
+    json["common_elevation_deg"] = beams.common_elevation_rad * kDegPerRad;
+    json["common_elevation_sigma_deg"] = beams.common_elevation_sigma_rad * kDegPerRad;
+  }
   return json.dump(2) + "\n";
 }
 
@@ -42,9 +46,15 @@ std::string to_text(const BeamEstimate& beams) {
     text += row(fmt::format("elevation {:>3}", ring), beams.elevation_rad[k],
                 beams.elevation_sigma_rad[k]);
   }
+  if (beams.common_elevation_rad != 0.0) {
+    text += row("elevation, common", beams.common_elevation_rad, beams.common_elevation_sigma_rad);
+  }
   text += row("azimuth, cosine", beams.eccentricity_rad[0], beams.eccentricity_sigma_rad);
   text += row("azimuth, sine", beams.eccentricity_rad[1], beams.eccentricity_sigma_rad);
-  return text + "Rings are counted from the lowest; those without a row saw no ground.\n";
+  return text +
+         "Rings are counted from the lowest; those without a row saw no ground. The common "
+         "elevation\n"
+         "is that of a ring 5 deg below the horizon, and of others in inverse proportion.\n";
 }
 
 }  // namespace lilo
