@@ -24,16 +24,9 @@ double kept_information(double sigma_rad) {
   return std::max(0.0, 1.0 / (believed_rad * believed_rad) - calibration::kPriorInformation);
 }
 
-/// Smaller ones are those of exact encoders, and larger ones no encoder's.
-bool is_applied(double eccentricity_rad) {
-  return eccentricity_rad >= calibration::kSmallest_rad &&
-         eccentricity_rad < calibration::kLargest_rad;
-}
-
-/// The same for the common error of the elevations.
-bool is_plausible(double common_rad) {
-  return std::abs(common_rad) >= calibration::kSmallestCommon_rad &&
-         std::abs(common_rad) < calibration::kLargest_rad;
+/// Smaller ones are found where there is no error, and larger ones no sensor has.
+bool is_plausible(double error_rad, double smallest_rad) {
+  return std::abs(error_rad) >= smallest_rad && std::abs(error_rad) < calibration::kLargest_rad;
 }
 
 /// Part of the information of an observation that the next one leaves.
@@ -54,7 +47,8 @@ double common_sigma_rad(const Eigen::Matrix<double, kBeamErrors, kBeamErrors>& i
   return variance > 0.0 ? std::sqrt(variance) : sigma_of(0.0);
 }
 
-Eigen::Vector3d applied(const BeamCorrection& correction) {
+/// The errors that bend the path, in the order of the columns of a sensitivity.
+Eigen::Vector3d errors_of(const BeamCorrection& correction) {
   const Eigen::Vector2d& eccentricity_rad = correction.eccentricity_rad;
   return {eccentricity_rad[0], eccentricity_rad[1], correction.common_elevation_rad};
 }
@@ -68,16 +62,16 @@ void BeamCalibration::resume(const BeamEstimate& kept) {
   std::transform(kept.elevation_sigma_rad.begin(), kept.elevation_sigma_rad.end(),
                  elevation_information_.begin(), kept_information);
   Errors information = Errors::Zero();
-  if (is_applied(largest_azimuth_rad(kept))) {
+  if (is_plausible(largest_azimuth_rad(kept), calibration::kSmallest_rad)) {
     correction_.eccentricity_rad = {kept.eccentricity_rad[0], kept.eccentricity_rad[1]};
     information.head<2>().setConstant(kept_information(kept.eccentricity_sigma_rad));
   }
-  if (is_plausible(kept.common_elevation_rad)) {
+  if (is_plausible(kept.common_elevation_rad, calibration::kSmallestCommon_rad)) {
     correction_.common_elevation_rad = kept.common_elevation_rad;
     information[2] = kept_information(kept.common_elevation_sigma_rad);
   }
   information_ = information.asDiagonal();
-  sum_ = (information.array() + calibration::kPriorInformation) * applied(correction_).array();
+  sum_ = (information.array() + calibration::kPriorInformation) * errors_of(correction_).array();
 }
 
 void BeamCalibration::begin_scan(const BeamTable& beams) {
@@ -125,7 +119,7 @@ void BeamCalibration::observe(const BeamEquations& scan, const BeamTable& beams,
   observe_path(scan, place_m);
 }
 
-std::optional<PoseSensitivity> BeamCalibration::take_large() {
+std::optional<PoseSensitivity> BeamCalibration::rebase() {
   const float largest_m = sensitivity_.pose.moved.bottomRows<3>().cwiseAbs().maxCoeff();
   if (!(largest_m >= calibration::kRebase_m)) return std::nullopt;
   return std::exchange(sensitivity_.pose, {});
@@ -174,11 +168,11 @@ void BeamCalibration::observe_path(const BeamEquations& scan, const Eigen::Vecto
   const Eigen::LDLT<Matrix6d> of_pose(path.pose_information + Matrix6d::Identity());
   const PathEquations::Cross followed = of_pose.solve(path.cross_information);
   if (of_pose.info() != Eigen::Success || !followed.allFinite()) return;
-  sensitivity_.pose = sensitivity_.pose.told_at(place_m);
+  sensitivity_.pose = sensitivity_.pose.expressed_at(place_m);
   sensitivity_.pose.moved -= followed.cast<float>();
-  PathEquations of_errors;
-  of_errors.information = path.information - path.cross_information.transpose() * followed;
-  of_errors.gradient = path.gradient - followed.transpose() * path.pose_gradient;
+  ErrorEquations of_errors = path.errors;
+  of_errors.information -= path.cross_information.transpose() * followed;
+  of_errors.gradient -= followed.transpose() * path.pose_gradient;
   leave_out_rings(scan.rings, followed, of_pose.solve(path.pose_gradient), of_errors);
   add_path(of_errors);
   correct_path();
@@ -188,7 +182,7 @@ void BeamCalibration::observe_path(const BeamEquations& scan, const Eigen::Vecto
 /// of all scans so far. `followed` and `moved`: how the pose moves with the errors and by itself.
 void BeamCalibration::leave_out_rings(const std::array<RingEquations, kMaxRings>& rings,
                                       const PathEquations::Cross& followed, const Vector6d& moved,
-                                      PathEquations& of_errors) {
+                                      ErrorEquations& of_errors) {
   for (std::size_t ring = 0; ring < static_cast<std::size_t>(ring_count_); ++ring) {
     const RingEquations& one = rings[ring];
     const auto by_errors = (one.by_errors - one.by_pose * followed).eval();
@@ -202,11 +196,11 @@ void BeamCalibration::leave_out_rings(const std::array<RingEquations, kMaxRings>
   }
 }
 
-void BeamCalibration::add_path(const PathEquations& path) {
-  const Information H = path.information.topLeftCorner<kBeamErrors, kBeamErrors>();
+void BeamCalibration::add_path(const ErrorEquations& errors) {
+  const Information H = errors.information.topLeftCorner<kBeamErrors, kBeamErrors>();
   // The last column is what the corrections have done: to add it gives the residuals without them.
   const Errors b =
-      path.gradient.head<kBeamErrors>() + path.information.topRightCorner<kBeamErrors, 1>();
+      errors.gradient.head<kBeamErrors>() + errors.information.topRightCorner<kBeamErrors, 1>();
   information_ = kKept * information_ + calibration::kWeight * 0.5 * (H + H.transpose());
   sum_ = kKept * sum_ + calibration::kWeight * b;
 }
@@ -216,13 +210,17 @@ void BeamCalibration::correct_path() {
   const Eigen::LDLT<Information> of_errors(all);
   if (of_errors.info() != Eigen::Success || !of_errors.isPositive()) return;
   const Errors found_rad = of_errors.solve(sum_);
-  const bool applies = is_applied(found_rad.head<2>().norm());
-  correction_.eccentricity_rad = applies ? found_rad.head<2>().eval() : Eigen::Vector2d::Zero();
+  const bool has_eccentricity =
+      is_plausible(found_rad.head<2>().norm(), calibration::kSmallest_rad);
+  correction_.eccentricity_rad =
+      has_eccentricity ? found_rad.head<2>().eval() : Eigen::Vector2d::Zero();
   double& common_rad = correction_.common_elevation_rad;
   const double least_sigmas =
       common_rad == 0.0 ? calibration::kCertainSigmas : calibration::kUncertainSigmas;
   const bool is_certain = std::abs(found_rad[2]) > least_sigmas * common_sigma_rad(information_);
-  common_rad = is_certain && is_plausible(found_rad[2]) ? found_rad[2] : 0.0;
+  const bool is_applied =
+      is_certain && is_plausible(found_rad[2], calibration::kSmallestCommon_rad);
+  common_rad = is_applied ? found_rad[2] : 0.0;
 }
 
 }  // namespace lilo::core

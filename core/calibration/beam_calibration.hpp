@@ -48,7 +48,7 @@ class BeamCalibration {
   void observe(const BeamEquations& scan, const BeamTable& beams, const Eigen::Vector3d& place_m);
   /// On a long way sensitivities grow until floats do not hold their differences (kRebase_m). Then
   /// gives the rigid motion that the caller is to subtract from the map. It changes no difference.
-  [[nodiscard]] std::optional<PoseSensitivity> take_large();
+  [[nodiscard]] std::optional<PoseSensitivity> rebase();
   /// Poses on a new map do not depend on the errors yet. The correction stays.
   void begin_map();
 
@@ -66,8 +66,8 @@ class BeamCalibration {
   void observe_path(const BeamEquations& scan, const Eigen::Vector3d& place_m);
   void leave_out_rings(const std::array<RingEquations, kMaxRings>& rings,
                        const PathEquations::Cross& followed, const Vector6d& moved,
-                       PathEquations& of_errors);
-  void add_path(const PathEquations& path);
+                       ErrorEquations& of_errors);
+  void add_path(const ErrorEquations& errors);
   void correct_path();
 
   int ring_count_ = 0;       // of the last scan; 0: none yet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/calibration/sensitivity.hpp"
+#include "core/constants.hpp"
 #include "core/feature.hpp"
 #include "core/scan.hpp"
 
@@ -33,9 +34,8 @@ struct BeamCorrection {
 /// proportion to r^2: a paraboloid. Ground alone does not show this, because on a path that bends
 /// up or down all scans agree.
 inline double common_part_of(double elevation_rad) {
-  constexpr double kUnit_rad = 0.0873, kNearHorizon_rad = 0.4 * kUnit_rad;
   if (elevation_rad >= 0.0) return 0.0;  // it sees no ground
-  return kUnit_rad / std::max(-elevation_rad, kNearHorizon_rad);
+  return calibration::kCommonAt_rad / std::max(-elevation_rad, calibration::kNearHorizon_rad);
 }
 
 /// How a point moves, in the sensor's frame, per radian of its beam's elevation.

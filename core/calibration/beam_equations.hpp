@@ -12,20 +12,25 @@
 /// What the residuals of one scan say of the beams' errors.
 namespace lilo::core {
 
-/// Normal equations of a pose and of the errors that bend the path: the blocks of H and b of
-/// H x = b.
+/// Of the errors that bend the path: H and b of H x = b.
+struct ErrorEquations {
+  Eigen::Matrix<double, kBeamColumns, kBeamColumns> information =
+      Eigen::Matrix<double, kBeamColumns, kBeamColumns>::Zero();
+  Eigen::Matrix<double, kBeamColumns, 1> gradient = Eigen::Matrix<double, kBeamColumns, 1>::Zero();
+};
+
+/// Of a pose and these errors: the blocks of H and b.
 struct PathEquations {
-  using Information = Eigen::Matrix<double, kBeamColumns, kBeamColumns>;
   using Cross = Eigen::Matrix<double, 6, kBeamColumns>;
   Matrix6d pose_information = Matrix6d::Zero();
   Cross cross_information = Cross::Zero();
-  Information information = Information::Zero();
   Vector6d pose_gradient = Vector6d::Zero();
-  Eigen::Matrix<double, kBeamColumns, 1> gradient = Eigen::Matrix<double, kBeamColumns, 1>::Zero();
+  ErrorEquations errors;
 
   [[nodiscard]] bool is_finite() const {
     return pose_information.allFinite() && cross_information.allFinite() &&
-           information.allFinite() && pose_gradient.allFinite() && gradient.allFinite();
+           pose_gradient.allFinite() && errors.information.allFinite() &&
+           errors.gradient.allFinite();
   }
 };
 

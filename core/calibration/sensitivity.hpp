@@ -33,11 +33,11 @@ struct PoseSensitivity {
     point.row(2) = moved.row(0) * d.y() - moved.row(1) * d.x() + moved.row(5);
     return point;
   }
-  /// The same rigid motion, told of another place.
-  [[nodiscard]] PoseSensitivity told_at(const Eigen::Vector3d& other_m) const {
-    PoseSensitivity told{moved, other_m};
-    told.moved.bottomRows<3>() = at(other_m);
-    return told;
+  /// The same rigid motion, expressed at another place.
+  [[nodiscard]] PoseSensitivity expressed_at(const Eigen::Vector3d& other_m) const {
+    PoseSensitivity same{moved, other_m};
+    same.moved.bottomRows<3>() = at(other_m);
+    return same;
   }
 };
 

@@ -34,10 +34,8 @@ CellMap::CellMap(const CellMapConfig& config)
   cells_.reserve(capacity);
   sums_.reserve(capacity);
   if (config.one_sided) rays_.assign(capacity, Eigen::Vector3f::Zero());
-  first_row_ = config.level ? 2 : 0;
   if (config.with_sensitivity) {
-    sensitivity_rows_.assign(capacity * static_cast<std::size_t>(3 - first_row_),
-                             SensitivityRow::Zero());
+    sensitivity_rows_.assign(row_of(capacity, first_row()), SensitivityRow::Zero());
   }
 }
 
@@ -57,8 +55,8 @@ std::int32_t CellMap::make(const CellKey& key) {
     sums_[static_cast<std::size_t>(at)] = Moments{};
   }
   if (config_.one_sided) rays_[static_cast<std::size_t>(at)].setZero();
-  for (int row = first_row_; row < 3 && config_.with_sensitivity; ++row) {
-    sensitivity_row(static_cast<std::size_t>(at), row).setZero();
+  for (int row = first_row(); row < 3 && config_.with_sensitivity; ++row) {
+    sensitivity_rows_[row_of(static_cast<std::size_t>(at), row)].setZero();
   }
   table_.insert(key.bucket, CellTable::tag_of(key.index), at);
   ++used_;
@@ -140,8 +138,8 @@ CellMap::MeanSensitivity CellMap::sensitivity_around(std::int32_t at) const {
   Eigen::Vector3f sum_m = Eigen::Vector3f::Zero();
   for (const Neighbour& o : std::span(neighbours).first(n)) {
     const auto one = static_cast<std::size_t>(o.at);
-    for (int row = first_row_; row < 3; ++row) {
-      around.sensitivity.row(row) += sensitivity_row(one, row);
+    for (int row = first_row(); row < 3; ++row) {
+      around.sensitivity.row(row) += sensitivity_rows_[row_of(one, row)];
     }
     count += count_of(sums_[one]);
     sum_m += points_of(sums_[one]) + count_of(sums_[one]) * Eigen::Vector3f(o.x_m, o.y_m, o.z_m);
@@ -156,11 +154,10 @@ void CellMap::subtract_sensitivity(const PoseSensitivity& rigid) {
   for (const CellTable::Slot& slot : table_.slots()) {
     if (slot.at == kNone) continue;
     const auto at = static_cast<std::size_t>(slot.at);
-    const float count = count_of(sums_[at]);
-    const Eigen::Vector3f own_m = points_of(sums_[at]) / count;
-    const Eigen::Vector3d mean_m = center_of(cells_[at].index) + own_m.cast<double>();
-    const Sensitivity moved = count * rigid.at(mean_m);
-    for (int row = first_row_; row < 3; ++row) sensitivity_row(at, row) -= moved.row(row);
+    const Eigen::Vector3d mean_m = center_of(cells_[at].index) + own_mean_of(at).cast<double>();
+    const Sensitivity moved = count_of(sums_[at]) * rigid.at(mean_m);
+    for (int row = first_row(); row < 3; ++row)
+      sensitivity_rows_[row_of(at, row)] -= moved.row(row);
   }
 }
 

@@ -12,7 +12,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 /// A map: points summed up in small cubic cells of a hash table.
@@ -133,7 +132,7 @@ class CellMap {
     prefetch_sums(at);
     const auto cell = static_cast<std::size_t>(at);
     if (config_.one_sided) __builtin_prefetch(&rays_[cell]);
-    if (config_.with_sensitivity) __builtin_prefetch(&sensitivity_row(cell, 2));
+    if (config_.with_sensitivity) __builtin_prefetch(&sensitivity_rows_[row_of(cell, 2)]);
     return at;
   }
   void add(std::int32_t at, const CellKey& key, const Eigen::Vector3d& point_m,
@@ -153,8 +152,8 @@ class CellMap {
       rays = kept * rays + ray;
     }
     if (!config_.with_sensitivity) return;
-    for (int row = first_row_; row < 3; ++row) {
-      SensitivityRow& sum = sensitivity_row(static_cast<std::size_t>(at), row);
+    for (int row = first_row(); row < 3; ++row) {
+      SensitivityRow& sum = sensitivity_rows_[row_of(static_cast<std::size_t>(at), row)];
       sum = kept * sum + sensitivity.row(row);
     }
   }
@@ -175,8 +174,7 @@ class CellMap {
     for (const CellTable::Slot& slot : table_.slots()) {
       if (slot.at == kNone) continue;
       const auto at = static_cast<std::size_t>(slot.at);
-      const Eigen::Vector3d own_m = (points_of(sums_[at]) / count_of(sums_[at])).cast<double>();
-      visit(center_of(cells_[at].index) + own_m);
+      visit(center_of(cells_[at].index) + own_mean_of(at).cast<double>());
     }
   }
 
@@ -234,12 +232,16 @@ class CellMap {
   [[nodiscard]] Eigen::Vector3f rays_around(std::span<const Neighbour> neighbours) const;
   void fit(Cell& cell) const;
   void remove(std::size_t slot);
-  [[nodiscard]] const SensitivityRow& sensitivity_row(std::size_t at, int row) const {
-    return sensitivity_rows_[at * static_cast<std::size_t>(3 - first_row_) +
-                             static_cast<std::size_t>(row - first_row_)];
+  /// The first of the rows of a sensitivity that are kept: all, or the height's.
+  [[nodiscard]] int first_row() const { return config_.level ? 2 : 0; }
+  /// Where a row of a cell stands in sensitivity_rows_.
+  [[nodiscard]] std::size_t row_of(std::size_t at, int row) const {
+    const int first = first_row();
+    return at * static_cast<std::size_t>(3 - first) + static_cast<std::size_t>(row - first);
   }
-  [[nodiscard]] SensitivityRow& sensitivity_row(std::size_t at, int row) {
-    return const_cast<SensitivityRow&>(std::as_const(*this).sensitivity_row(at, row));
+  /// The mean of the cell's own points, from its centre.
+  [[nodiscard]] Eigen::Vector3f own_mean_of(std::size_t at) const {
+    return points_of(sums_[at]) / count_of(sums_[at]);
   }
   /// The part of the radius of forget_beyond() for which there is room.
   [[nodiscard]] double radius_part() const;
@@ -254,7 +256,6 @@ class CellMap {
   std::vector<Moments> sums_;                     // what insert() sums, from the cell's centre
   std::vector<Eigen::Vector3f> rays_;             // sums of unit vectors, where sides count
   std::vector<SensitivityRow> sensitivity_rows_;  // sums as well, where they are asked for
-  int first_row_ = 0;                             // of those kept
   std::int32_t free_ = kNone;                     // the cell removed last; it names the one before
   std::size_t sweep_ = 0;
   std::uint32_t keyframe_ = 1;

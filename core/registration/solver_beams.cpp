@@ -17,6 +17,22 @@ Eigen::Matrix<float, 3, 6> moved_by_pose(const Eigen::Vector3f& p) {
   return J;
 }
 
+/// The Cauchy kernel at a residual `r` with information `O`. Along the residual its curvature is
+/// less than its weight: with weights the errors would be found too small. A negative one counts
+/// as zero.
+struct Robust {
+  float weight;
+  Eigen::Vector3f gradient;
+  Eigen::Matrix3f curvature;
+};
+Robust robust_of(const Eigen::Vector3f& r, const Eigen::Matrix3f& O, float kernel) {
+  const Eigen::Vector3f Or = O * r;
+  const float u = r.dot(Or) / (kernel * kernel);
+  const float weight = 1.0F / (1.0F + u);
+  const float flat = 2.0F * weight / std::max(1.0F + u, 2.0F * u) / (kernel * kernel);
+  return {weight, weight * Or, weight * O - flat * Or * Or.transpose()};
+}
+
 }  // namespace
 
 BeamEquations Solver::beam_equations(const std::vector<Feature>& features, LocalMaps& maps,
@@ -43,15 +59,8 @@ void Solver::add_beam_residual(const Correspondence& one, LocalMaps& maps,
   const bool ground = f.kind == FeatureKind::ground;
   const Eigen::Vector3f& r = one.match.from_mean_m;
   const Eigen::Matrix3f O = matrix_of(*one.match.information);
-  const float kernel = ground ? config_.ground_kernel : config_.structure_kernel;
-  const Eigen::Vector3f Or = O * r;
-  const float u = r.dot(Or) / (kernel * kernel);
-  const float robust = 1.0F / (1.0F + u);
-  const Eigen::Vector3f wOr = robust * Or;
-  // Robust weights are the slope of the kernel. Along the residual its curvature is less, and
-  // beyond u = 1 negative: with weights alone the errors would be found too small by half.
-  const float flat = 2.0F * robust / std::max(1.0F + u, 2.0F * u) / (kernel * kernel);
-  const Eigen::Matrix3f wO = robust * O - flat * Or * Or.transpose();
+  const auto [weight, wOr, wO] =
+      robust_of(r, O, ground ? config_.ground_kernel : config_.structure_kernel);
   const Eigen::Matrix<float, 3, 6> J = moved_by_pose(one.turned_m);
   // A rigid motion of the whole path turns the surface of the cell as well. So it counts at the
   // mean of the cell, not at the point.
@@ -65,13 +74,13 @@ void Solver::add_beam_residual(const Correspondence& one, LocalMaps& maps,
   path.pose_information += (J.transpose() * wOJ).cast<double>();
   path.pose_gradient -= (J.transpose() * wOr).cast<double>();
   path.cross_information += (J.transpose() * wOD).cast<double>();
-  path.information += (D.transpose() * wOD).cast<double>();
-  path.gradient -= (D.transpose() * wOr).cast<double>();
+  path.errors.information += (D.transpose() * wOD).cast<double>();
+  path.errors.gradient -= (D.transpose() * wOr).cast<double>();
   if (!ground) return;
   const Eigen::Vector3f up = sampled_.turn(f.s, moved_by_elevation(f));
   RingEquations& ring = sums.rings[f.ring];
   ring.gradient -= static_cast<double>(up.dot(wOr));
-  ring.information += static_cast<double>(robust * up.dot(O * up));
+  ring.information += static_cast<double>(weight * up.dot(O * up));
   ring.curvature += static_cast<double>(up.dot(wO * up));
   ring.by_pose += (up.transpose() * wOJ).cast<double>();
   ring.by_errors += (up.transpose() * wOD).cast<double>();

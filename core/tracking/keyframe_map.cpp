@@ -124,7 +124,7 @@ void KeyframeMap::insert_held() {
 void KeyframeMap::subtract_sensitivity(const PoseSensitivity& rigid) {
   cells_.subtract_sensitivity(rigid);
   PoseSensitivity& held = held_.sensitivity.pose;
-  held.moved -= rigid.told_at(held.place_m).moved;
+  held.moved -= rigid.expressed_at(held.place_m).moved;
 }
 
 }  // namespace lilo::core

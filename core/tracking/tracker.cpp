@@ -72,7 +72,6 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
                      : alignment_.is_explained ? MapUse::keyframe
                                                : MapUse::end_only;
   if (use == MapUse::keyframe) calibrate();
-  local_.set_sensitivity(calibration_.sensitivity());
   // The result counts from the next scan on: the pose of this one is out.
   if (is_checked()) {
     motion_check_.observe_ambiguity(least_known_axis(alignment_.solution),
@@ -91,7 +90,8 @@ void Tracker::calibrate() {
   calibration_.observe(local_.beam_equations(*scan_.features, alignment_.solution.trajectory,
                                              calibration_.sensitivity()),
                        beams_, place_m);
-  if (const auto rigid = calibration_.take_large()) local_.subtract_sensitivity(*rigid);
+  if (const auto rigid = calibration_.rebase()) local_.subtract_sensitivity(*rigid);
+  local_.set_sensitivity(calibration_.sensitivity());
 }
 
 /// Gives the map up and begins another one where the prediction ends. The sensor is not where the

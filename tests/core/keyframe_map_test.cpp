@@ -141,6 +141,46 @@ TEST_F(KeyframeMapTest, BeginsWithOneScanAtOnce) {
   EXPECT_EQ(map_.cells().size(), fresh.cells().size()) << "nothing of before is left";
 }
 
+// Of a keyframe that waits too: it enters after the subtraction.
+TEST_F(KeyframeMapTest, WithoutARigidMotionSensitivitiesAreThoseOfPointsAlone) {
+  PoseSensitivity rigid;
+  rigid.moved.col(2) << 0.1F, -0.2F, 0.3F, 4.0F, 5.0F, 6.0F;
+  rigid.place_m = {10.0, 20.0, 1.0};
+  ScanSensitivity alone;
+  alone.correction.common_part.fill(1.0F);
+  ScanSensitivity with_path = alone;
+  with_path.pose = rigid.expressed_at({1.0, 0.0, 0.0});
+  KeyframeMap other{DefaultConfig{}};
+  for (int k = 0; k <= kEnough; ++k) {
+    map_.set_sensitivity(with_path);
+    other.set_sensitivity(alone);
+    if (k == kEnough) {
+      map_.subtract_sensitivity(rigid);
+      map_.set_sensitivity(alone);
+    }
+    const Pose T{Eigen::Quaterniond::Identity(), {0.5 * k, 0.0, 0.0}};
+    const test::ObservedScan scan(
+        test::yard(), [&](double) { return T; }, static_cast<std::uint64_t>(k));
+    for (KeyframeMap* map : {&map_, &other}) {
+      map->grow({scan.timing(), scan.features(), solution_at(T), T});
+    }
+  }
+  int compared = 0;
+  const auto sensitivity_at = [](const CellMap& cells, const Eigen::Vector3d& point_m) {
+    return cells.sensitivity_around(cells.cell_at(cells.key_of(point_m))).sensitivity;
+  };
+  for (const FeatureKind kind : {FeatureKind::ground, FeatureKind::structure}) {
+    const CellMap& cells = map_.cells().at(LocalMaps::kWhole, kind);
+    const CellMap& expected = other.cells().at(LocalMaps::kWhole, kind);
+    ASSERT_EQ(cells.size(), expected.size());
+    cells.for_each_mean([&](const Eigen::Vector3d& mean_m) {
+      EXPECT_LT((sensitivity_at(cells, mean_m) - sensitivity_at(expected, mean_m)).norm(), 2e-3);
+      ++compared;
+    });
+  }
+  EXPECT_GT(compared, 100);
+}
+
 TEST_F(KeyframeMapTest, IsEmptyAfterClear) {
   fill();
   map_.clear();
