@@ -123,6 +123,10 @@ namespace lilo::core::motion {
 /// seen so far away.
 inline constexpr double kLever_m = 10.0;
 
+/// m/s^2: no carrier of a sensor changes its velocity faster over a scan. 5 g; a wheel that hits a
+/// curb gets as much, for 30 ms.
+inline constexpr double kImpossibleAcceleration_mps2 = 50.0;
+
 /// Segments of a trajectory at most.
 inline constexpr int kMaxSegments = 4;
 /// Radians, 1 sigma of the motion between two knots, which gives the number of segments: 2 cm at

@@ -147,7 +147,8 @@ std::optional<Solution> Tracker::solve(const Prior& predicted) {
   }
   const Solution found = align_from_prediction(predicted);
   if (phase_ == Phase::starting) return found;
-  return relocalizer_.follow_turn(found, scan_, predicted, history_, local_);
+  const Solution turned = relocalizer_.follow_turn(found, scan_, predicted, history_, local_);
+  return is_possible(turned, predicted) ? turned : local_.unaligned(predicted);
 }
 
 /// The prediction, if the sensor is not found. None if it was unseen for longer than the search
@@ -164,7 +165,8 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
   }
   const std::optional<Solution> found =
       relocalizer_.find(scan_, prior, at_prediction, history_, local_);
-  const bool is_found = found && !is_lost(*found) && (is_searchable || is_predicted(*found));
+  const bool is_found = found && !is_lost(*found) && is_possible(*found, prior) &&
+                        (is_searchable || is_predicted(*found));
   return is_found ? *found : local_.unaligned(prior);
 }
 
@@ -173,6 +175,15 @@ bool Tracker::is_lost(const Solution& solution) const {
   // A number, not a part of the features: in a park a fifth of them may match in a good alignment.
   return static_cast<std::size_t>(solution.matched) < tracking::kMinFeatures ||
          history_.fit.relative(solution, scan_.structure) < registration::kChanceFit;
+}
+
+/// Whether the sensor can have the velocity at the end of the solution. Where a scan is all but
+/// covered, what is left may match at any height, and the next predictions would fly off.
+bool Tracker::is_possible(const Solution& solution, const Prior& prior) const {
+  const Twist end = solution.trajectory.end_twist();
+  const double since_s = history_.unseen_s(scan_.timing) + prior.span_s;
+  return (end.linear_mps - prior.twist.linear_mps).norm() <=
+         motion::kImpossibleAcceleration_mps2 * since_s;
 }
 
 Tracker::Alignment Tracker::judge(const Solution& solution) const {

@@ -64,6 +64,29 @@ TEST(DefaultProfile, FollowsADriveWithSixteenBeams) {
   EXPECT_EQ(result.estimates.back().status, TrackingStatus::tracking);
 }
 
+// Within one scan all returns sink, as though the sensor rose to 12 m/s. A truck that encloses it
+// once matched so, and the next predictions flew off at 355 m/s.
+TEST(DefaultProfile, TakesNoVelocityThatNoCarrierReaches) {
+  constexpr int kSinking = 15;
+  Odometry odometry{OdometryConfig{}};
+  for (int k = 0; k < kSinking + 5; ++k) {
+    const auto at = [k](double s) {
+      Pose T = drive(0.1 * (k + s), 6.0);
+      if (k == kSinking) T.translation_m.z() += 0.6 * s * s;
+      return T;
+    };
+    const Estimate e =
+        odometry.process(test::scan_of(test::yard(), k16, 900, at, static_cast<std::uint64_t>(k)));
+    const Pose truth = drive(0.0, 6.0).inverse() * drive(0.1 * (k + 1), 6.0);
+    EXPECT_LT((truth.inverse() * e.T_odom_sensor).translation_m.norm(), 0.1) << "scan " << k;
+    EXPECT_LT(e.twist.linear_mps.norm(), 7.0) << "scan " << k;
+    if (k >= kSinking) {
+      const bool is_possible = k > kSinking;
+      EXPECT_EQ(e.status, is_possible ? TrackingStatus::tracking : TrackingStatus::lost) << k;
+    }
+  }
+}
+
 TEST(DefaultProfile, CountsWhatAFullMapHasNoRoomFor) {
   EXPECT_EQ(run(k16, 6.0, 0.0, 3).estimates.back().map_refused_count, 0U);
   OdometryConfig config;
