@@ -158,7 +158,7 @@ TEST_F(KeyframeMapTest, WithoutARigidMotionSensitivitiesAreThoseOfPointsAlone) {
       map_.subtract_sensitivity(rigid);
       map_.set_sensitivity(alone);
     }
-    const Pose T{Eigen::Quaterniond::Identity(), {0.5 * k, 0.0, 0.0}};
+    Pose T{Eigen::Quaterniond::Identity(), {0.5 * k, 0.0, 0.0}};
     const test::ObservedScan scan(
         test::yard(), [&](double) { return T; }, static_cast<std::uint64_t>(k));
     for (KeyframeMap* map : {&map_, &other}) {
