@@ -123,9 +123,9 @@ namespace lilo::core::motion {
 /// seen so far away.
 inline constexpr double kLever_m = 10.0;
 
-/// m/s^2: no carrier of a sensor changes its velocity faster over a scan. 5 g; a wheel that hits a
-/// curb gets as much, for 30 ms.
-inline constexpr double kImpossibleAcceleration_mps2 = 50.0;
+/// m/s^2, 20 g: no carrier of a sensor changes its velocity so fast over a scan. Range: 100 to 500.
+/// With 50 the right solution after a wrong one was refused, and the sensor was lost.
+inline constexpr double kImpossibleAcceleration_mps2 = 200.0;
 
 /// Segments of a trajectory at most.
 inline constexpr int kMaxSegments = 4;
