@@ -51,7 +51,7 @@ inline constexpr double kSigma_rad = 1e-3;
 inline constexpr double kPriorInformation = 1.0 / (kSigma_rad * kSigma_rad);
 /// Radians below the horizon, 5 degrees: where the common error is what it is said to be.
 inline constexpr double kCommonAt_rad = 0.0873;
-/// The common error of a ring nearer to the horizon is that of a ring here.
+/// Radians below the horizon, 2 degrees: a ring nearer to it has the common error of a ring here.
 inline constexpr double kNearHorizon_rad = 0.4 * kCommonAt_rad;
 /// One of so many features is used.
 inline constexpr std::size_t kStride = 8;

@@ -20,12 +20,12 @@ Eigen::Matrix<float, 3, 6> moved_by_pose(const Eigen::Vector3f& p) {
 /// The Cauchy kernel at a residual `r` with information `O`. Along the residual its curvature is
 /// less than its weight: with weights the errors would be found too small. A negative one counts
 /// as zero.
-struct Robust {
+struct RobustTerms {
   float weight;
   Eigen::Vector3f gradient;
   Eigen::Matrix3f curvature;
 };
-Robust robust_of(const Eigen::Vector3f& r, const Eigen::Matrix3f& O, float kernel) {
+RobustTerms robust_terms(const Eigen::Vector3f& r, const Eigen::Matrix3f& O, float kernel) {
   const Eigen::Vector3f Or = O * r;
   const float u = r.dot(Or) / (kernel * kernel);
   const float weight = 1.0F / (1.0F + u);
@@ -60,7 +60,7 @@ void Solver::add_beam_residual(const Correspondence& one, LocalMaps& maps,
   const Eigen::Vector3f& r = one.match.from_mean_m;
   const Eigen::Matrix3f O = matrix_of(*one.match.information);
   const auto [weight, wOr, wO] =
-      robust_of(r, O, ground ? config_.ground_kernel : config_.structure_kernel);
+      robust_terms(r, O, ground ? config_.ground_kernel : config_.structure_kernel);
   const Eigen::Matrix<float, 3, 6> J = moved_by_pose(one.turned_m);
   // A rigid motion of the whole path turns the surface of the cell as well. So it counts at the
   // mean of the cell, not at the point.

@@ -20,6 +20,15 @@ Eigen::Vector2d least_known_axis(const Solution& solution) {
   return by_information.eigenvectors().col(0);
 }
 
+/// Whether the sensor can have the velocity at the end of the solution. Where a scan is all but
+/// covered, what is left may match at any height, and the next predictions would fly off.
+/// `unseen_s`: AlignmentHistory::unseen_s().
+bool has_possible_velocity(const Solution& solution, const Prior& prior, double unseen_s) {
+  const Twist end = solution.trajectory.end_twist();
+  return (end.linear_mps - prior.twist.linear_mps).norm() <=
+         motion::kImpossibleAcceleration_mps2 * (unseen_s + prior.span_s);
+}
+
 }  // namespace
 
 Tracker::Tracker(const OdometryConfig& config)
@@ -148,7 +157,9 @@ std::optional<Solution> Tracker::solve(const Prior& predicted) {
   const Solution found = align_from_prediction(predicted);
   if (phase_ == Phase::starting) return found;
   const Solution turned = relocalizer_.follow_turn(found, scan_, predicted, history_, local_);
-  return is_possible(turned, predicted) ? turned : local_.unaligned(predicted);
+  const bool is_possible =
+      has_possible_velocity(turned, predicted, history_.unseen_s(scan_.timing));
+  return is_possible ? turned : local_.unaligned(predicted);
 }
 
 /// The prediction, if the sensor is not found. None if it was unseen for longer than the search
@@ -159,13 +170,15 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
   const auto is_predicted = [&](const Solution& solution) {
     return is_in_place(solution, prior, history_.fit.relative(solution, scan_.structure));
   };
-  const bool is_searchable = history_.unseen_s(scan_.timing) <= motion::kLongestGap_s;
+  const double unseen_s = history_.unseen_s(scan_.timing);
+  const bool is_searchable = unseen_s <= motion::kLongestGap_s;
   if (!is_searchable && !local_.is_stationary() && !is_predicted(at_prediction)) {
     return std::nullopt;
   }
   const std::optional<Solution> found =
       relocalizer_.find(scan_, prior, at_prediction, history_, local_);
-  const bool is_found = found && !is_lost(*found) && is_possible(*found, prior) &&
+  const bool is_found = found && !is_lost(*found) &&
+                        has_possible_velocity(*found, prior, unseen_s) &&
                         (is_searchable || is_predicted(*found));
   return is_found ? *found : local_.unaligned(prior);
 }
@@ -175,15 +188,6 @@ bool Tracker::is_lost(const Solution& solution) const {
   // A number, not a part of the features: in a park a fifth of them may match in a good alignment.
   return static_cast<std::size_t>(solution.matched) < tracking::kMinFeatures ||
          history_.fit.relative(solution, scan_.structure) < registration::kChanceFit;
-}
-
-/// Whether the sensor can have the velocity at the end of the solution. Where a scan is all but
-/// covered, what is left may match at any height, and the next predictions would fly off.
-bool Tracker::is_possible(const Solution& solution, const Prior& prior) const {
-  const Twist end = solution.trajectory.end_twist();
-  const double since_s = history_.unseen_s(scan_.timing) + prior.span_s;
-  return (end.linear_mps - prior.twist.linear_mps).norm() <=
-         motion::kImpossibleAcceleration_mps2 * since_s;
 }
 
 Tracker::Alignment Tracker::judge(const Solution& solution) const {

@@ -82,7 +82,6 @@ class Tracker {
   std::optional<Solution> solve(const Prior& predicted);
   std::optional<Solution> relocalize(const Solution& at_prediction, const Prior& prior);
   [[nodiscard]] bool is_lost(const Solution& solution) const;
-  [[nodiscard]] bool is_possible(const Solution& solution, const Prior& prior) const;
   [[nodiscard]] Alignment judge(const Solution& solution) const;
   void accept(const Prior& prior);
   [[nodiscard]] bool is_checked() const;

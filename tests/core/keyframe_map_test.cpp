@@ -152,12 +152,10 @@ TEST_F(KeyframeMapTest, WithoutARigidMotionSensitivitiesAreThoseOfPointsAlone) {
   with_path.pose = rigid.expressed_at({1.0, 0.0, 0.0});
   KeyframeMap other{DefaultConfig{}};
   for (int k = 0; k <= kEnough; ++k) {
-    map_.set_sensitivity(with_path);
+    const bool is_last = k == kEnough;
+    if (is_last) map_.subtract_sensitivity(rigid);
+    map_.set_sensitivity(is_last ? alone : with_path);
     other.set_sensitivity(alone);
-    if (k == kEnough) {
-      map_.subtract_sensitivity(rigid);
-      map_.set_sensitivity(alone);
-    }
     Pose T{Eigen::Quaterniond::Identity(), {0.5 * k, 0.0, 0.0}};
     const test::ObservedScan scan(
         test::yard(), [&](double) { return T; }, static_cast<std::uint64_t>(k));
