@@ -122,11 +122,24 @@ void BeamCalibration::observe(const BeamEquations& scan, const BeamTable& beams,
 std::optional<PoseSensitivity> BeamCalibration::rebase() {
   const float largest_m = sensitivity_.pose.moved.bottomRows<3>().cwiseAbs().maxCoeff();
   if (!(largest_m >= calibration::kRebase_m)) return std::nullopt;
-  return std::exchange(sensitivity_.pose, {});
+  const PoseSensitivity rebased = std::exchange(sensitivity_.pose, {});
+  rebased_ = rebased_.expressed_at(rebased.place_m);
+  rebased_.moved += rebased.moved;
+  return rebased;
+}
+
+Matrix6d BeamCalibration::pose_covariance(const Eigen::Vector3d& place_m) const {
+  const Eigen::LDLT<Information> of_errors(with_prior());
+  if (of_errors.info() != Eigen::Success || !of_errors.isPositive()) return Matrix6d::Zero();
+  const PoseSensitivity::Matrix whole =
+      sensitivity_.pose.expressed_at(place_m).moved + rebased_.expressed_at(place_m).moved;
+  const Eigen::Matrix<double, 6, kBeamErrors> moved = whole.leftCols<kBeamErrors>().cast<double>();
+  const Vector6d left = moved * of_errors.solve(sum_) - whole.col(kBeamErrors).cast<double>();
+  return moved * of_errors.solve(moved.transpose()) + left * left.transpose();
 }
 
 void BeamCalibration::begin_map() {
-  sensitivity_.pose = {};
+  sensitivity_.pose = rebased_ = {};
   last_place_m_.reset();
 }
 
@@ -205,9 +218,12 @@ void BeamCalibration::add_path(const ErrorEquations& errors) {
   sum_ = kKept * sum_ + calibration::kWeight * b;
 }
 
+BeamCalibration::Information BeamCalibration::with_prior() const {
+  return information_ + calibration::kPriorInformation * Information::Identity();
+}
+
 void BeamCalibration::correct_path() {
-  const Information all = information_ + calibration::kPriorInformation * Information::Identity();
-  const Eigen::LDLT<Information> of_errors(all);
+  const Eigen::LDLT<Information> of_errors(with_prior());
   if (of_errors.info() != Eigen::Success || !of_errors.isPositive()) return;
   const Errors found_rad = of_errors.solve(sum_);
   const bool has_eccentricity =

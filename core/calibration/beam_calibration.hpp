@@ -4,6 +4,7 @@
 #include "core/calibration/beam_correction.hpp"
 #include "core/calibration/beam_equations.hpp"
 #include "core/calibration/beam_estimate.hpp"
+#include "core/pose.hpp"
 
 #include <Eigen/Core>
 
@@ -49,6 +50,10 @@ class BeamCalibration {
   /// On a long way sensitivities grow until floats do not hold their differences (kRebase_m). Then
   /// gives the rigid motion that the caller is to subtract from the map. It changes no difference.
   [[nodiscard]] std::optional<PoseSensitivity> rebase();
+  /// Of the pose at `place_m`: rotation then translation, odometry axes (rad, m). What is not known
+  /// of the errors that bend the path, and what corrections that came late have left in it: the
+  /// second moment about the pose. `place_m`: of the last scan that was observed, or nearby.
+  [[nodiscard]] Matrix6d pose_covariance(const Eigen::Vector3d& place_m) const;
   /// Poses on a new map do not depend on the errors yet. The correction stays.
   void begin_map();
 
@@ -69,6 +74,8 @@ class BeamCalibration {
                        ErrorEquations& of_errors);
   void add_path(const ErrorEquations& errors);
   void correct_path();
+  /// H with that of the prior.
+  [[nodiscard]] Information with_prior() const;
 
   int ring_count_ = 0;       // of the last scan; 0: none yet
   int kept_ring_count_ = 0;  // of what is resumed; 0: nothing, or it was looked at
@@ -79,6 +86,7 @@ class BeamCalibration {
   Errors sum_ = Errors::Zero();
   std::array<RingMean, kMaxRings> ring_means_{};
   ScanSensitivity sensitivity_;
+  PoseSensitivity rebased_;  // what was subtracted from the pose's since the map was begun
   std::optional<Eigen::Vector3d> last_place_m_;
 };
 

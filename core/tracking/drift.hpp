@@ -6,7 +6,7 @@
 namespace lilo::core {
 
 /// The drift of the local map since it was begun: the covariance of the pose that an alignment
-/// without any error of its own would give. It grows in four ways:
+/// without any error of its own would give. It grows in five ways:
 ///
 /// - Every keyframe enters the map with the error of its own alignment and hands it on to the scans
 ///   that are aligned with it.
@@ -16,6 +16,7 @@ namespace lilo::core {
 ///   Estimation, 1974, chapter 3) that augments the pose.
 /// - An error of attitude turns into an error of position as the sensor moves on.
 /// - Along a weak direction the motion is dead reckoned.
+/// - Errors of the beams that are not known bend the path.
 ///
 /// The scale of the path is uncertain as well: what is seen of an object moves a little with the
 /// sensor. All covariances: rotation then translation, as a small motion from the left about the
@@ -40,11 +41,14 @@ class Drift {
   void coast(const Eigen::Matrix3d& axes, double acceleration_density, double span_s);
   /// For `span_s` a scan told of all translations.
   void see(double span_s);
+  /// The beams' part at the last pose (BeamCalibration::pose_covariance), until the next call.
+  void set_beams(const Matrix6d& covariance) { beams_ = covariance; }
 
   [[nodiscard]] Matrix6d covariance() const;
 
  private:
-  Matrix6d pose_ = Matrix6d::Zero();   // covariance, without the scale of the path
+  Matrix6d pose_ = Matrix6d::Zero();  // covariance, without the scale of the path
+  Matrix6d beams_ = Matrix6d::Zero();
   Matrix6d cross_ = Matrix6d::Zero();  // covariance of the pose with the correlated error
   Eigen::Vector3d travelled_m_ = Eigen::Vector3d::Zero();  // since the map was begun
   Matrix6d at_start_ = Matrix6d::Zero();

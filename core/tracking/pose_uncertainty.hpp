@@ -27,6 +27,8 @@ class PoseUncertainty {
              double span_s);
   /// The sensor has moved on.
   void move(const Eigen::Vector3d& by_m) { drift_.move(by_m); }
+  /// The beams' part of the covariance of the last pose (BeamCalibration::pose_covariance).
+  void set_beams(const Matrix6d& covariance) { drift_.set_beams(covariance); }
   /// The last scan became a keyframe; the map has so many now.
   void add_keyframe(const MotionState& state, int keyframes);
 

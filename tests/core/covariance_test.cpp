@@ -100,6 +100,22 @@ TEST(Drift, AnErrorOfHeadingMovesAsideWhatLiesAhead) {
   EXPECT_NEAR(drift.covariance()(2, 4), 0.01, 1e-9);         // to the left where it turns left
 }
 
+// The beams' part is no sum over keyframes: each call has all of it. A new map begins with it.
+TEST(Drift, TheBeamsPartIsReplacedAndMovesOn) {
+  core::Drift drift;
+  drift.begin(Matrix6d::Zero());
+  Matrix6d pitch = Matrix6d::Zero();
+  pitch(1, 1) = 1e-4;  // 0.01 rad about y
+  drift.set_beams(pitch);
+  drift.set_beams(pitch);
+  drift.move({100.0, 0.0, 0.0});
+  EXPECT_NEAR(drift.covariance()(1, 1), 1e-4, 1e-12);
+  EXPECT_NEAR(drift.covariance()(5, 5), 1.0, 1e-9);  // 1 m up or down
+  drift.begin(drift.covariance());
+  drift.set_beams(Matrix6d::Zero());
+  EXPECT_NEAR(drift.covariance()(5, 5), 1.0, 1e-9);
+}
+
 // Of what the scale is wrong by, nothing is left where the way ends at its beginning.
 TEST(Drift, AnErrorOfScaleGrowsWithTheDistanceFromTheStartAndComesBack) {
   core::Drift drift;
