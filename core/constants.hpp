@@ -66,8 +66,8 @@ inline constexpr double kApart_m = 0.3;
 /// Radians: a larger eccentricity or common error is not applied. In a scene of nothing but round
 /// trunks the alignment has an error in one direction, and the estimate grows beyond this.
 inline constexpr double kLargest_rad = 3.0 * kSigma_rad;
-/// Radians: a smaller eccentricity is not applied. That of an exact encoder is estimated as 0.02 to
-/// 0.39 mrad, which bends the path.
+/// Radians: a smaller eccentricity is not applied. That of an exact encoder is mostly estimated as
+/// 0.02 to 0.39 mrad, which bends the path.
 inline constexpr double kSmallest_rad = 0.4e-3;
 /// Radians: a smaller common error of the elevations is not applied. Where there is none, up to so
 /// much is found with 64 beams under velosim's --real. Range: 0 to 0.5 mrad on a first run.
