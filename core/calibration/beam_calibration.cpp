@@ -40,10 +40,12 @@ double known_part(double information) {
   return information / (information + calibration::kPriorInformation);
 }
 
-double common_sigma_rad(const Eigen::Matrix<double, kBeamErrors, kBeamErrors>& information) {
-  const Eigen::Matrix3d all =
-      information + calibration::kPriorInformation * Eigen::Matrix3d::Identity();
-  const double variance = all.inverse()(2, 2);
+Eigen::Matrix3d with_prior(const Eigen::Matrix3d& information) {
+  return information + calibration::kPriorInformation * Eigen::Matrix3d::Identity();
+}
+
+double common_sigma_rad(const Eigen::Matrix3d& information) {
+  const double variance = with_prior(information).inverse()(2, 2);
   return variance > 0.0 ? std::sqrt(variance) : sigma_of(0.0);
 }
 
@@ -128,14 +130,16 @@ std::optional<PoseSensitivity> BeamCalibration::rebase() {
   return rebased;
 }
 
-Matrix6d BeamCalibration::pose_covariance(const Eigen::Vector3d& place_m) const {
-  const Eigen::LDLT<Information> of_errors(with_prior());
+Matrix6d BeamCalibration::pose_covariance() const {
+  const Eigen::LDLT<Information> of_errors(with_prior(information_));
   if (of_errors.info() != Eigen::Success || !of_errors.isPositive()) return Matrix6d::Zero();
-  const PoseSensitivity::Matrix whole =
+  const Eigen::Vector3d place_m = last_place_m_.value_or(Eigen::Vector3d::Zero());
+  const PoseSensitivity::Matrix moved =
       sensitivity_.pose.expressed_at(place_m).moved + rebased_.expressed_at(place_m).moved;
-  const Eigen::Matrix<double, 6, kBeamErrors> moved = whole.leftCols<kBeamErrors>().cast<double>();
-  const Vector6d left = moved * of_errors.solve(sum_) - whole.col(kBeamErrors).cast<double>();
-  return moved * of_errors.solve(moved.transpose()) + left * left.transpose();
+  const Eigen::Matrix<double, 6, kBeamErrors> J = moved.leftCols<kBeamErrors>().cast<double>();
+  const Vector6d corrected = moved.col(kBeamErrors).cast<double>();
+  const Vector6d uncorrected = J * of_errors.solve(sum_) - corrected;
+  return J * of_errors.solve(J.transpose()) + uncorrected * uncorrected.transpose();
 }
 
 void BeamCalibration::begin_map() {
@@ -218,12 +222,8 @@ void BeamCalibration::add_path(const ErrorEquations& errors) {
   sum_ = kKept * sum_ + calibration::kWeight * b;
 }
 
-BeamCalibration::Information BeamCalibration::with_prior() const {
-  return information_ + calibration::kPriorInformation * Information::Identity();
-}
-
 void BeamCalibration::correct_path() {
-  const Eigen::LDLT<Information> of_errors(with_prior());
+  const Eigen::LDLT<Information> of_errors(with_prior(information_));
   if (of_errors.info() != Eigen::Success || !of_errors.isPositive()) return;
   const Errors found_rad = of_errors.solve(sum_);
   const bool has_eccentricity =

@@ -50,10 +50,11 @@ class BeamCalibration {
   /// On a long way sensitivities grow until floats do not hold their differences (kRebase_m). Then
   /// gives the rigid motion that the caller is to subtract from the map. It changes no difference.
   [[nodiscard]] std::optional<PoseSensitivity> rebase();
-  /// Of the pose at `place_m`: rotation then translation, odometry axes (rad, m). What is not known
-  /// of the errors that bend the path, and what corrections that came late have left in it: the
-  /// second moment about the pose. `place_m`: of the last scan that was observed, or nearby.
-  [[nodiscard]] Matrix6d pose_covariance(const Eigen::Vector3d& place_m) const;
+  /// The beams' part of the covariance of the pose of the last observed scan: rotation then
+  /// translation, odometry axes (rad, m). J C J' + e e': J is how the pose moves with the errors
+  /// that bend the path, C the covariance of their estimate, and e what corrections that came late
+  /// have left in the pose. Zero where the information is not positive.
+  [[nodiscard]] Matrix6d pose_covariance() const;
   /// Poses on a new map do not depend on the errors yet. The correction stays.
   void begin_map();
 
@@ -74,8 +75,6 @@ class BeamCalibration {
                        ErrorEquations& of_errors);
   void add_path(const ErrorEquations& errors);
   void correct_path();
-  /// H with that of the prior.
-  [[nodiscard]] Information with_prior() const;
 
   int ring_count_ = 0;       // of the last scan; 0: none yet
   int kept_ring_count_ = 0;  // of what is resumed; 0: nothing, or it was looked at

@@ -13,7 +13,7 @@ namespace lilo::core {
 void Drift::begin(const Matrix6d& at_start) {
   pose_ = at_start_ = at_start;
   cross_.setZero();
-  beams_.setZero();
+  of_beams_.setZero();
   travelled_m_.setZero();
   coasted_s_ = 0.0;
 }
@@ -22,7 +22,7 @@ void Drift::move(const Eigen::Vector3d& by_m) {
   Matrix6d F = Matrix6d::Identity();
   F.bottomLeftCorner<3, 3>() = -skew(by_m);  // rotation x by
   pose_ = F * pose_ * F.transpose();
-  beams_ = F * beams_ * F.transpose();
+  of_beams_ = F * of_beams_ * F.transpose();
   cross_ = F * cross_;
   travelled_m_ += by_m;
 }
@@ -56,7 +56,7 @@ void Drift::coast(const Eigen::Matrix3d& axes, double acceleration_density, doub
 void Drift::see(double span_s) { coasted_s_ = std::max(0.0, coasted_s_ - span_s); }
 
 Matrix6d Drift::covariance() const {
-  Matrix6d sum = pose_ + beams_;
+  Matrix6d sum = pose_ + of_beams_;
   sum.bottomRightCorner<3, 3>() +=
       tracking::kPathScale * tracking::kPathScale * travelled_m_ * travelled_m_.transpose();
   return sum;

@@ -42,14 +42,14 @@ class Drift {
   /// For `span_s` a scan told of all translations.
   void see(double span_s);
   /// The beams' part at the last pose (BeamCalibration::pose_covariance), until the next call.
-  void set_beams(const Matrix6d& covariance) { beams_ = covariance; }
+  void set_beam_covariance(const Matrix6d& covariance) { of_beams_ = covariance; }
 
   [[nodiscard]] Matrix6d covariance() const;
 
  private:
-  Matrix6d pose_ = Matrix6d::Zero();  // covariance, without the scale of the path
-  Matrix6d beams_ = Matrix6d::Zero();
+  Matrix6d pose_ = Matrix6d::Zero();   // covariance, without the scale of the path and the beams
   Matrix6d cross_ = Matrix6d::Zero();  // covariance of the pose with the correlated error
+  Matrix6d of_beams_ = Matrix6d::Zero();
   Eigen::Vector3d travelled_m_ = Eigen::Vector3d::Zero();  // since the map was begun
   Matrix6d at_start_ = Matrix6d::Zero();
   double coasted_s_ = 0.0;  // time of dead reckoning, less the time seen since

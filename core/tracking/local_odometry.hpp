@@ -68,8 +68,10 @@ class LocalOdometry {
                 const Solution& solution, MapUse use);
   /// How scans depend on the errors of the beams, from now on.
   void set_sensitivity(const ScanSensitivity& sensitivity) { map_.set_sensitivity(sensitivity); }
-  /// What is not known of the beams makes the last pose uncertain by that.
-  void set_beam_covariance(const Matrix6d& covariance) { uncertainty_.set_beams(covariance); }
+  /// The beams' part of the covariance of the last pose (BeamCalibration::pose_covariance).
+  void set_beam_covariance(const Matrix6d& covariance) {
+    uncertainty_.set_beam_covariance(covariance);
+  }
   /// Of the scan just aligned, before it enters the map.
   BeamEquations beam_equations(const std::vector<Feature>& features, const Trajectory& trajectory,
                                const ScanSensitivity& sensitivity) {

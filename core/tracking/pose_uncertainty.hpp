@@ -28,7 +28,7 @@ class PoseUncertainty {
   /// The sensor has moved on.
   void move(const Eigen::Vector3d& by_m) { drift_.move(by_m); }
   /// The beams' part of the covariance of the last pose (BeamCalibration::pose_covariance).
-  void set_beams(const Matrix6d& covariance) { drift_.set_beams(covariance); }
+  void set_beam_covariance(const Matrix6d& covariance) { drift_.set_beam_covariance(covariance); }
   /// The last scan became a keyframe; the map has so many now.
   void add_keyframe(const MotionState& state, int keyframes);
 

@@ -101,7 +101,7 @@ void Tracker::calibrate() {
                        beams_, place_m);
   if (const auto rigid = calibration_.rebase()) local_.subtract_sensitivity(*rigid);
   local_.set_sensitivity(calibration_.sensitivity());
-  local_.set_beam_covariance(calibration_.pose_covariance(place_m));
+  local_.set_beam_covariance(calibration_.pose_covariance());
 }
 
 /// Gives the map up and begins another one where the prediction ends. The sensor is not where the

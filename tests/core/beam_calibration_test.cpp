@@ -173,6 +173,17 @@ TEST_F(BeamCalibrationInAYard, FindsWhatTheRingsHaveInCommon) {
   EXPECT_NEAR(found.common_elevation_rad, kCommon_rad, 2.0 * found.common_elevation_sigma_rad);
 }
 
+// Where beams count as exact, sigma of the roll is less than 0.7 times as large.
+TEST_F(BeamCalibrationInAYard, MakesThePoseAsUncertainAsTheBeams) {
+  drive(60, report_as_a_paraboloid);
+  const Matrix6d uncertain_beams = last_.covariance;
+  OdometryConfig config;
+  config.default_profile.calibrate_beams = false;
+  tracker_ = Tracker{config};
+  drive(60, report_as_a_paraboloid);
+  EXPECT_GT(uncertain_beams(3, 3), 2.0 * last_.covariance(3, 3));
+}
+
 TEST_F(BeamCalibrationInAYard, ResumesWhatAnotherRunFound) {
   drive(200, report_wrongly);
   const BeamEstimate found = tracker_.beam_estimate();

@@ -135,26 +135,28 @@ TEST(BeamEquations, ALargeSensitivityIsGivenToBeSubtracted) {
   BeamEquations scan;
   scan.path.pose_information = 1e9 * Matrix6d::Identity();
   scan.path.cross_information(5, kCommon) = -2e14;
+  scan.path.errors.information(kCommon, kCommon) = 4e19;  // 4e10 when the pose has followed
   const Eigen::Vector3d place_m(1.0, 2.0, 3.0);
   observed.observe(scan, place_m);
-  const Matrix6d covariance = observed.calibration.pose_covariance(place_m);
+  const Matrix6d covariance = observed.calibration.pose_covariance();
+  EXPECT_NEAR(covariance(5, 5), 2e5 * 2e5 / (0.16 * 4e10 + 1e6), 0.01) << "of the weight and prior";
   const auto large = observed.calibration.rebase();
   ASSERT_TRUE(large.has_value());
   EXPECT_NEAR(large->at(place_m)(2, kCommon), 2e5F, 1.0F);
   EXPECT_EQ(observed.calibration.sensitivity().pose.moved.norm(), 0.0F);
-  EXPECT_EQ(observed.calibration.pose_covariance(place_m), covariance) << "it is as uncertain";
+  EXPECT_EQ(observed.calibration.pose_covariance(), covariance) << "it is as uncertain";
   EXPECT_FALSE(observed.calibration.rebase().has_value());
 }
 
 // A pose that follows the common error by -1 m/rad is uncertain by 1 mrad of it: by 1 mm upwards.
 TEST(BeamEquations, WhatIsNotKnownOfAnErrorMakesThePoseUncertain) {
   Observed observed;
-  EXPECT_EQ(observed.calibration.pose_covariance({0.0, 0.0, 0.0}).norm(), 0.0);
+  EXPECT_EQ(observed.calibration.pose_covariance().norm(), 0.0);
   BeamEquations scan;
   scan.path.pose_information = 1e10 * Matrix6d::Identity();
   scan.path.errors.information(kCommon, kCommon) = scan.path.cross_information(5, kCommon) = 1e10;
   observed.observe(scan);
-  const Matrix6d covariance = observed.calibration.pose_covariance({0.0, 0.0, 0.0});
+  const Matrix6d covariance = observed.calibration.pose_covariance();
   EXPECT_NEAR(covariance(5, 5), 1e-6, 1e-9);
   EXPECT_NEAR(covariance.norm(), 1e-6, 1e-9) << "nothing else follows";
 }
@@ -166,7 +168,7 @@ TEST(BeamEquations, WhatIsCorrectedLateMakesThePoseUncertain) {
   scan.path.pose_information = 1e10 * Matrix6d::Identity();
   scan.path.errors.information(kCommon, kCommon) = scan.path.cross_information(5, kCommon) = 1e10;
   observed.observe(scan).observe(equations_of(kCommon, 2.0 * kMrad));
-  EXPECT_NEAR(observed.calibration.pose_covariance({0.0, 0.0, 0.0})(5, 5), 4e-6, 1e-8);
+  EXPECT_NEAR(observed.calibration.pose_covariance()(5, 5), 4e-6, 1e-8);
 }
 
 // A ring's own mean follows its residual; what 1/elevation and elevation explain is taken out.

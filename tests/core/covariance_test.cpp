@@ -106,13 +106,13 @@ TEST(Drift, TheBeamsPartIsReplacedAndMovesOn) {
   drift.begin(Matrix6d::Zero());
   Matrix6d pitch = Matrix6d::Zero();
   pitch(1, 1) = 1e-4;  // 0.01 rad about y
-  drift.set_beams(pitch);
-  drift.set_beams(pitch);
+  drift.set_beam_covariance(pitch);
+  drift.set_beam_covariance(pitch);
   drift.move({100.0, 0.0, 0.0});
   EXPECT_NEAR(drift.covariance()(1, 1), 1e-4, 1e-12);
   EXPECT_NEAR(drift.covariance()(5, 5), 1.0, 1e-9);  // 1 m up or down
   drift.begin(drift.covariance());
-  drift.set_beams(Matrix6d::Zero());
+  drift.set_beam_covariance(Matrix6d::Zero());
   EXPECT_NEAR(drift.covariance()(5, 5), 1.0, 1e-9);
 }
 
