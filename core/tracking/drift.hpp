@@ -15,7 +15,7 @@ namespace lilo::core {
 ///   In the sensor's axes it is a first-order Gauss-Markov process (Gelb, Applied Optimal
 ///   Estimation, 1974, chapter 3) that augments the pose.
 /// - An error of attitude turns into an error of position as the sensor moves on.
-/// - Along a weak direction the motion is dead reckoned.
+/// - Along a direction of which scans tell next to nothing the motion is dead reckoned.
 /// - Errors of the beams that are not known bend the path.
 ///
 /// The scale of the path is uncertain as well: what is seen of an object moves a little with the

@@ -25,8 +25,11 @@ void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state
   Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
   int count = 0;
   for (int k = 0; k < weak.count && count < 3; ++k) {
-    const Eigen::Vector3d along = weak.all[static_cast<std::size_t>(k)].direction.head<3>();  // m
-    if (along.norm() < tracking::kMostlyTurns_m) continue;
+    const WeakDirection& one = weak.all[static_cast<std::size_t>(k)];
+    const Eigen::Vector3d along = one.direction.head<3>();  // m
+    if (one.from_scan > tracking::kDeadReckonedShare || along.norm() < tracking::kMostlyTurns_m) {
+      continue;
+    }
     axes.col(count++) = state.T_odom_sensor.rotation * along.normalized();
   }
   if (count == 0) {

@@ -131,6 +131,15 @@ TEST(PoseUncertainty, EveryWeakDirectionIsDeadReckoned) {
   EXPECT_NEAR(after(5, 5), before(5, 5), 1e-9);
 }
 
+// The scan has a third of what is known of the direction; the alignment counts it.
+TEST(PoseUncertainty, WhatTheScanTellsOfAWeakDirectionHoldsThePose) {
+  PoseUncertainty uncertainty(kDataWeight);
+  WeakDirections weak = weak_along(six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0));
+  weak.all[0].from_scan = 1.0 / 3.0;
+  for (int k = 0; k < 10; ++k) uncertainty.learn(weak, exact_state(), Vector6d::Ones(), 0.1);
+  EXPECT_NEAR(uncertainty.covariance(exact_state())(3, 3), 0.0, 1e-12);
+}
+
 TEST(PoseUncertainty, WeaknessThatMostlyTurnsIsNotDeadReckoned) {
   PoseUncertainty uncertainty(kDataWeight);
   const Vector6d density = Vector6d::Ones();
