@@ -28,7 +28,6 @@ std::array<std::int16_t, 3> direction_of(const Eigen::Vector3f& v) {
 CellMap::CellMap(const CellMapConfig& config)
     : config_(config),
       per_m_(1.0 / static_cast<double>(config.cell_m)),
-      kept_(1.0F - 1.0F / config.memory),
       table_(static_cast<std::size_t>(config.capacity)) {
   const auto capacity = static_cast<std::size_t>(config.capacity);
   cells_.reserve(capacity);

@@ -41,7 +41,6 @@ struct CellMapConfig {
   bool with_sensitivity = false;
   /// The most cells. Points that need another one are left out and counted.
   int capacity = DefaultConfig{}.map_cells;
-  float memory = map::kMemory;
 };
 
 /// The distribution of a cell is the Gaussian of the points in the 3x3x3 cells around it, its
@@ -52,6 +51,8 @@ struct CellMapConfig {
 class CellMap {
  public:
   static constexpr std::int32_t kNone = CellTable::kNone;
+  /// Part of a full cell's sums that one more point leaves.
+  static constexpr float kKept = 1.0F - 1.0F / map::kMemory;
   /// A cell's key in the table, whether it is there or not.
   struct CellKey {
     CellIndex index{};
@@ -145,7 +146,7 @@ class CellMap {
     const float spread =
         gap.square_m2 > window_m2 ? window_m2 / (12.0F * gap.square_m2) : 1.0F / 12.0F;  // if even
     const Eigen::Vector3f p = (point_m - center_of(key.index)).cast<float>();
-    const float kept = count_of(sums) >= config_.memory ? kept_ : 1.0F;
+    const float kept = count_of(sums) >= map::kMemory ? kKept : 1.0F;
     add_to(sums, kept, moments_of(p, spread, gap.outer_m2));
     if (config_.one_sided) {
       Eigen::Vector3f& rays = rays_[static_cast<std::size_t>(at)];
@@ -250,7 +251,6 @@ class CellMap {
 
   CellMapConfig config_;
   double per_m_;
-  float kept_;  // part of a full cell's sums that one more point leaves
   CellTable table_;
   std::vector<Cell> cells_;
   std::vector<Moments> sums_;                     // what insert() sums, from the cell's centre
