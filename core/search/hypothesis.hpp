@@ -14,7 +14,7 @@
 namespace lilo::core {
 
 /// A motion to be tested, added to a known one: along the ground and about the vertical, in the
-/// odometry's axes. MotionSearch and MotionCheck mean the displacement in one second.
+/// odometry's axes. MotionSearch means the displacement in one second.
 struct Displacement {
   Eigen::Vector2d along_m = Eigen::Vector2d::Zero();
   double yaw_rad = 0.0;        ///< of the last firing

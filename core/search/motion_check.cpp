@@ -40,15 +40,15 @@ void MotionCheck::count_ambiguous_scans() {
   }
 }
 
-/// Under motions that are faster or slower along the axis, or across it.
-int MotionCheck::least_occupied(const Eigen::Vector2d& axis, Subsample subsample) {
-  int least = std::numeric_limits<int>::max();
+/// Under motions that are faster or slower along the axis, or across it; `limit` if none has less.
+int MotionCheck::least_occupied(const Eigen::Vector2d& axis, Subsample subsample, int limit) {
+  int least = limit;
   for (const double speed_mps : search::kFalseMotions_mps) {
-    const Eigen::Vector2d along_m = speed_mps * axis;
-    const Eigen::Vector2d across_m(-along_m.y(), along_m.x());
-    for (const Eigen::Vector2d& by_m :
-         {along_m, Eigen::Vector2d(-along_m), across_m, Eigen::Vector2d(-across_m)}) {
-      least = std::min(least, scans_.occupied_under({.along_m = by_m}, subsample, grid_));
+    const Eigen::Vector2d along_mps = speed_mps * axis;
+    const Eigen::Vector2d across_mps(-along_mps.y(), along_mps.x());
+    for (const Eigen::Vector2d& faster_mps :
+         {along_mps, Eigen::Vector2d(-along_mps), across_mps, Eigen::Vector2d(-across_mps)}) {
+      least = scans_.occupied_under(faster_mps, subsample, grid_, least);
     }
   }
   return least;
@@ -56,12 +56,11 @@ int MotionCheck::least_occupied(const Eigen::Vector2d& axis, Subsample subsample
 
 bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
   // A motion that is clearly better with all points is mostly better with a quarter of them too.
-  if (least_occupied(axis, Subsample::quarter) >=
-      scans_.occupied_under({}, Subsample::quarter, grid_)) {
-    return false;
-  }
-  const int tracked = scans_.occupied_under({}, Subsample::all, grid_);
-  const int least = least_occupied(axis, Subsample::all);
+  const Eigen::Vector2d as_tracked = Eigen::Vector2d::Zero();
+  const int quarter = scans_.occupied_under(as_tracked, Subsample::quarter, grid_);
+  if (least_occupied(axis, Subsample::quarter, quarter) == quarter) return false;
+  const int tracked = scans_.occupied_under(as_tracked, Subsample::all, grid_);
+  const int least = least_occupied(axis, Subsample::all, tracked);
   const int alone = scans_.occupied_alone(grid_);
   // Scans that hardly have cells in common tell nothing: then the number of all cells counts. The
   // best of sixteen false motions is sometimes two sigmas better when someone carries the sensor.
@@ -69,7 +68,7 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
          tracked - least > search::kDropSigmas * std::sqrt(static_cast<double>(tracked));
 }
 
-bool MotionCheck::is_refuted(const Eigen::Vector2d& axis) {
+bool MotionCheck::check(const Eigen::Vector2d& axis) {
   if (!scans_.is_full()) return false;
   times_refuted_ = is_clearly_better(axis) ? times_refuted_ + 1 : 0;
   return times_refuted_ >= search::kRefutingScans;
@@ -85,15 +84,15 @@ void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis, bool has_weak_d
 /// motion, in sigmas of that count: how far it falls from the highest value before. Negative where
 /// it only rises.
 double MotionCheck::depth_of_second_minimum(const Eigen::Vector2d& axis) {
-  const double tracked = spaced_scans_.occupied_under({}, Subsample::all, grid_);
+  const double tracked =
+      spaced_scans_.occupied_under(Eigen::Vector2d::Zero(), Subsample::all, grid_);
   if (tracked < 1.0) return 0.0;  // no structure at all
   double deepest = -std::numeric_limits<double>::max();
   for (const double direction : {-1.0, 1.0}) {
     double highest = tracked;
     for (int step = 1; step <= search::kAmbiguitySteps; ++step) {
-      const Eigen::Vector2d by_m = direction * step * search::kAmbiguityStep_mps * axis;
-      const double occupied =
-          spaced_scans_.occupied_under({.along_m = by_m}, Subsample::all, grid_);
+      const Eigen::Vector2d faster_mps = direction * step * search::kAmbiguityStep_mps * axis;
+      const double occupied = spaced_scans_.occupied_under(faster_mps, Subsample::all, grid_);
       deepest = std::max(deepest, highest - occupied);
       highest = std::max(highest, occupied);
     }

@@ -34,15 +34,15 @@ class MotionCheck {
            const ScanTiming& timing);
   /// To be called once after each add(). Whether another motion was significantly better both now
   /// and the last time. `axis`: horizontal unit vector along or across the surroundings.
-  bool is_refuted(const Eigen::Vector2d& axis);
-  /// To be called once after each is_refuted(). Looks for a second minimum over 15 scans
-  /// (kAmbiguityStride). `has_weak_direction`: of the newest scan, which is dead reckoned along it.
+  bool check(const Eigen::Vector2d& axis);
+  /// To be called once after each check(). Looks for a second minimum over 15 scans
+  /// (kAmbiguityStride). `has_weak_direction`: of the newest scan.
   void observe_ambiguity(const Eigen::Vector2d& axis, bool has_weak_direction);
   /// Whether there has been one for some time.
   [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }
   /// Whether it just ended after kAmbiguousScans or more. How far the sensor came meanwhile is not
   /// known, and the map is that of one of two motions. False if most of these scans had a weak
-  /// direction, as in a tunnel: the covariance grew along it.
+  /// direction, as in a tunnel: the prior held the pose along it.
   [[nodiscard]] bool ambiguity_ended() const { return ambiguity_ended_; }
 
  private:
@@ -50,7 +50,7 @@ class MotionCheck {
   [[nodiscard]] bool newest_is_spaced() const {
     return (scan_count_ - 1) % search::kAmbiguityStride == 0;
   }
-  int least_occupied(const Eigen::Vector2d& axis, Subsample subsample);
+  int least_occupied(const Eigen::Vector2d& axis, Subsample subsample, int limit);
   bool is_clearly_better(const Eigen::Vector2d& axis);
   double depth_of_second_minimum(const Eigen::Vector2d& axis);
 

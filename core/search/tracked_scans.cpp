@@ -22,18 +22,21 @@ void TrackedScans::add(const StructurePoints& structure, const Pose& T_begin, co
 }
 
 /// From the end of the newest scan.
-void TrackedScans::lay(const TrackedScan& scan, const Displacement& more, Subsample subsample,
-                       TopDownGrid& grid) const {
+void TrackedScans::lay(const TrackedScan& scan, const Eigen::Vector2d& faster_mps,
+                       Subsample subsample, TopDownGrid& grid) const {
   const TrackedScan& newest = scans_[newest_];
   const double ago_s = seconds_between(scan.end_ns, newest.end_ns);
-  grid.add(scan.points, scan.begin_m - newest.end_m - (ago_s + scan.span_s) * more.along_m,
-           scan.end_m - newest.end_m - ago_s * more.along_m, subsample);
+  grid.add(scan.points, scan.begin_m - newest.end_m - (ago_s + scan.span_s) * faster_mps,
+           scan.end_m - newest.end_m - ago_s * faster_mps, subsample);
 }
 
-int TrackedScans::occupied_under(const Displacement& more, Subsample subsample,
-                                 TopDownGrid& grid) const {
+int TrackedScans::occupied_under(const Eigen::Vector2d& faster_mps, Subsample subsample,
+                                 TopDownGrid& grid, int limit) const {
   grid.clear();
-  for (const TrackedScan& scan : scans_) lay(scan, more, subsample, grid);
+  for (const TrackedScan& scan : scans_) {
+    lay(scan, faster_mps, subsample, grid);
+    if (grid.occupied() >= limit) return limit;
+  }
   return grid.occupied();
 }
 
@@ -41,7 +44,7 @@ int TrackedScans::occupied_alone(TopDownGrid& grid) const {
   int occupied = 0;
   for (const TrackedScan& scan : scans_) {
     grid.clear();
-    lay(scan, {}, Subsample::all, grid);
+    lay(scan, Eigen::Vector2d::Zero(), Subsample::all, grid);
     occupied += grid.occupied();
   }
   return occupied;

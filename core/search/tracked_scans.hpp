@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace lilo::core {
 
@@ -34,14 +35,16 @@ class TrackedScans {
   void add(const StructurePoints& structure, const Pose& T_begin, const Pose& T_end,
            const ScanTiming& timing);
   [[nodiscard]] bool is_full() const { return count_ == scans_.size(); }
-  /// Cells that all scans occupy together, as though the sensor had moved by `more` in each second
-  /// in addition to how it was tracked. To be called only if is_full().
-  int occupied_under(const Displacement& more, Subsample subsample, TopDownGrid& grid) const;
+  /// Cells that all scans occupy together, as though the sensor had been faster than tracked by
+  /// `faster_mps` (odometry's axes); `limit` if they are as many or more. To be called only if
+  /// is_full().
+  int occupied_under(const Eigen::Vector2d& faster_mps, Subsample subsample, TopDownGrid& grid,
+                     int limit = std::numeric_limits<int>::max()) const;
   /// The sum of the cells that each scan occupies alone.
   int occupied_alone(TopDownGrid& grid) const;
 
  private:
-  void lay(const TrackedScan& scan, const Displacement& more, Subsample subsample,
+  void lay(const TrackedScan& scan, const Eigen::Vector2d& faster_mps, Subsample subsample,
            TopDownGrid& grid) const;
 
   std::array<TrackedScan, search::kMotionScans> scans_;

@@ -76,8 +76,7 @@ Estimate Tracker::align(const Scan& scan, std::vector<Feature>& features, StageH
 }
 
 void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
-  const bool is_lost = alignment_.status == TrackingStatus::lost;
-  const MapUse use = is_lost                   ? MapUse::none
+  const MapUse use = is_lost()                 ? MapUse::none
                      : alignment_.is_explained ? MapUse::keyframe
                                                : MapUse::end_only;
   if (use == MapUse::keyframe) calibrate();
@@ -140,7 +139,7 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
 Solution Tracker::align_from_prediction(const Prior& prior) {
   Solution found = local_.align(*scan_.features, prior, scan_.levels);
   if (phase_ == Phase::starting) return found;
-  if (!is_lost(found) &&
+  if (!matches_too_little(found) &&
       history_.fit.relative(found, scan_.structure) > registration::kDoubtfulFit) {
     return found;
   }
@@ -178,14 +177,14 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
   }
   const std::optional<Solution> found =
       relocalizer_.find(scan_, prior, at_prediction, history_, local_);
-  const bool is_found = found && !is_lost(*found) &&
+  const bool is_found = found && !matches_too_little(*found) &&
                         has_possible_velocity(*found, prior, unseen_s) &&
                         (is_searchable || is_predicted(*found));
   return is_found ? *found : local_.unaligned(prior);
 }
 
 /// Whether an alignment found too little of the scan in the map.
-bool Tracker::is_lost(const Solution& solution) const {
+bool Tracker::matches_too_little(const Solution& solution) const {
   // A number, not a part of the features: in a park a fifth of them may match in a good alignment.
   return static_cast<std::size_t>(solution.matched) < tracking::kMinFeatures ||
          history_.fit.relative(solution, scan_.structure) < registration::kChanceFit;
@@ -195,7 +194,7 @@ Tracker::Alignment Tracker::judge(const Solution& solution) const {
   Alignment a{.solution = solution};
   if (is_first()) return a;
   const double fit = history_.fit.relative(solution, scan_.structure);
-  if (is_lost(solution)) {
+  if (matches_too_little(solution)) {
     a.status = TrackingStatus::lost;
     a.is_explained = false;
     return a;
@@ -209,7 +208,6 @@ Tracker::Alignment Tracker::judge(const Solution& solution) const {
 
 void Tracker::accept(const Prior& prior) {
   const Solution& solution = alignment_.solution;
-  const bool is_lost = alignment_.status == TrackingStatus::lost;
   history_.is_doubtful =
       history_.fit.relative(solution, scan_.structure) < registration::kDoubtfulFit;
   if (alignment_.is_explained) {
@@ -218,7 +216,7 @@ void Tracker::accept(const Prior& prior) {
   }
   // A scan with compensated returns has no middle. One that has not converged is farther off than
   // its information says, and the noise would grow by its errors.
-  const bool tells_noise = solution.converged && !is_lost && !scan_.timing.motion_compensated;
+  const bool tells_noise = solution.converged && !is_lost() && !scan_.timing.motion_compensated;
   if (tells_noise) {
     local_.observe_noise(scan_.timing, solution);
   } else {
@@ -226,7 +224,7 @@ void Tracker::accept(const Prior& prior) {
   }
   if (is_first()) {
     local_.accept_first(scan_.timing);
-  } else if (is_lost) {
+  } else if (is_lost()) {
     local_.accept_prediction(scan_.timing, prior);
   } else {
     local_.accept(scan_.timing, solution);
@@ -234,16 +232,15 @@ void Tracker::accept(const Prior& prior) {
       initializer_.set_track(solution.trajectory.at(0.0), local_.state().T_odom_sensor);
     }
   }
-  if (!is_lost) local_.observe_stationary();
+  if (!is_lost()) local_.observe_stationary();
 }
 
 /// Scans before a gap, or before the clock was set, cannot be laid over this one.
-bool Tracker::is_checked() const {
-  return phase_ == Phase::tracking && alignment_.status != TrackingStatus::lost;
-}
+bool Tracker::is_checked() const { return phase_ == Phase::tracking && !is_lost(); }
 
-/// Whether another motion explains the last scans better, so that the map may be wrong.
-bool Tracker::is_refuted() {
+/// Takes the scan. Returns whether another motion explains the last scans better, so that the map
+/// may be wrong.
+bool Tracker::check_motion() {
   if (!is_checked()) {
     motion_check_.clear();
     return false;
@@ -252,7 +249,7 @@ bool Tracker::is_refuted() {
   const Pose& T_end = local_.state().T_odom_sensor;
   const Pose T_begin = scan_.timing.motion_compensated ? T_end : solution.trajectory.at(0.0);
   motion_check_.add(*scan_.features, T_begin, T_end, scan_.timing);
-  return motion_check_.is_refuted(least_known_axis(solution));
+  return motion_check_.check(least_known_axis(solution));
 }
 
 /// Decides whether the session is over.
@@ -262,7 +259,7 @@ void Tracker::watch_session() {
   } else if (scan_.says_enough()) {
     ++session_.unexplained_scans;
   }
-  const bool refuted = is_refuted();
+  const bool refuted = check_motion();
   if (refuted) {
     alignment_.status = TrackingStatus::lost;
   } else if (motion_check_.ambiguity_ended() && alignment_.status == TrackingStatus::tracking) {
@@ -274,7 +271,6 @@ void Tracker::watch_session() {
 
 Estimate Tracker::estimate(const Scan& scan) const {
   const Solution& solution = alignment_.solution;
-  const bool is_lost = alignment_.status == TrackingStatus::lost;
   const LocalMaps& cells = local_.map().cells();
   Estimate e;
   e.scan_index = scan.index;
@@ -283,7 +279,7 @@ Estimate Tracker::estimate(const Scan& scan) const {
   e.twist = local_.state().twist;
   // Before the initial motion is known, nothing is lost yet.
   const bool is_unknown = phase_ == Phase::starting && !initializer_.assumes_stationary();
-  e.status = is_lost && is_unknown ? TrackingStatus::initializing : alignment_.status;
+  e.status = is_lost() && is_unknown ? TrackingStatus::initializing : alignment_.status;
   e.structure_count = static_cast<int>(scan_.structure);
   e.ground_count = static_cast<int>(scan_.features->size()) - e.structure_count;
   e.map_cell_count = cells.size();

@@ -76,16 +76,18 @@ class Tracker {
   };
   void begin_session();
   void begin_map();
+  /// Whether the last scan was not found in the map, or its motion was refuted.
+  [[nodiscard]] bool is_lost() const { return alignment_.status == TrackingStatus::lost; }
   [[nodiscard]] bool is_first() const { return initializer_.scans() == 1; }
   Prior begin_scan(const std::vector<Feature>& features);
   Solution align_from_prediction(const Prior& prior);
   std::optional<Solution> solve(const Prior& predicted);
   std::optional<Solution> relocalize(const Solution& at_prediction, const Prior& prior);
-  [[nodiscard]] bool is_lost(const Solution& solution) const;
+  [[nodiscard]] bool matches_too_little(const Solution& solution) const;
   [[nodiscard]] Alignment judge(const Solution& solution) const;
   void accept(const Prior& prior);
   [[nodiscard]] bool is_checked() const;
-  [[nodiscard]] bool is_refuted();
+  [[nodiscard]] bool check_motion();
   void watch_session();
   void calibrate();
   [[nodiscard]] Estimate estimate(const Scan& scan) const;
