@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/search/motion_check.hpp"
 
+#include "core/search/hypothesis.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -4,7 +4,6 @@
 #include "core/constants.hpp"
 #include "core/motion/scan_timing.hpp"
 #include "core/pose.hpp"
-#include "core/search/hypothesis.hpp"
 #include "core/search/top_down_grid.hpp"
 
 #include <array>
