@@ -328,9 +328,9 @@ inline constexpr double kLeastDesignEffect = 0.05;
 /// Scans that share the error of a cell.
 inline constexpr double kScansSharingErrors = 3.0;
 /// Part of the information from the scan below which the motion along a weak direction is dead
-/// reckoned. Of a smooth tunnel a scan still seems to tell 0.03 to 0.1, because noise tilts the
-/// normals. Other weak directions mostly have 0.2 or more, and the alignment's covariance counts
-/// what scan and prior tell together.
+/// reckoned. Along a smooth tunnel a scan still seems to give 0.03 to 0.1, because noise tilts the
+/// normals. Other weak directions mostly have 0.2 or more; there only the alignment's covariance
+/// counts. Range: 0.1 to 0.25.
 inline constexpr double kDeadReckonedShare = 0.15;
 /// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
 inline constexpr double kMostlyTurns_m = 0.3;

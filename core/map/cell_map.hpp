@@ -51,8 +51,6 @@ struct CellMapConfig {
 class CellMap {
  public:
   static constexpr std::int32_t kNone = CellTable::kNone;
-  /// Part of a full cell's sums that one more point leaves.
-  static constexpr float kKept = 1.0F - 1.0F / map::kMemory;
   /// A cell's key in the table, whether it is there or not.
   struct CellKey {
     CellIndex index{};
@@ -183,6 +181,8 @@ class CellMap {
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
 
  private:
+  /// Part of a full cell's sums that one more point leaves.
+  static constexpr float kKept = 1.0F - 1.0F / map::kMemory;
   /// What find() reads: one cache line.
   struct alignas(64) Cell {
     CellIndex index{};
@@ -193,6 +193,7 @@ class CellMap {
     std::array<std::int16_t, 3> inwards{};  // into the surface, of any length; zero: not known
     bool is_known = false;                  // there are enough points
   };
+  static_assert(sizeof(Cell) == 64);
   struct Neighbour {
     std::int32_t at;
     float x_m, y_m, z_m;  // from the one in the middle

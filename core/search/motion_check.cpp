@@ -34,15 +34,16 @@ void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin,
 
 void MotionCheck::count_ambiguous_scans() {
   ambiguity_ended_ = !is_ambiguous() && ambiguous_scans_ >= search::kAmbiguousScans &&
-                     2 * weak_scans_ < ambiguous_scans_;
+                     2 * dead_reckoned_scans_ < ambiguous_scans_;
   if (is_ambiguous()) {
     ++ambiguous_scans_;
   } else {
-    ambiguous_scans_ = weak_scans_ = 0;
+    ambiguous_scans_ = dead_reckoned_scans_ = 0;
   }
 }
 
-/// Under motions that are faster or slower along the axis, or across it; `limit` if none has less.
+/// The fewest cells occupied under motions that are faster or slower along the axis, or across it;
+/// `limit` if none has fewer.
 int MotionCheck::least_occupied(const Eigen::Vector2d& axis, Subsample subsample, int limit) {
   int least = limit;
   for (const double speed_mps : search::kFalseMotions_mps) {
@@ -70,14 +71,14 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
          tracked - least > search::kDropSigmas * std::sqrt(static_cast<double>(tracked));
 }
 
-bool MotionCheck::check(const Eigen::Vector2d& axis) {
+bool MotionCheck::compare(const Eigen::Vector2d& axis) {
   if (!scans_.is_full()) return false;
   times_refuted_ = is_clearly_better(axis) ? times_refuted_ + 1 : 0;
   return times_refuted_ >= search::kRefutingScans;
 }
 
-void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis, bool has_weak_direction) {
-  if (has_weak_direction && is_ambiguous()) ++weak_scans_;
+void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis, bool is_dead_reckoned) {
+  if (is_dead_reckoned && is_ambiguous()) ++dead_reckoned_scans_;
   if (!newest_is_spaced() || !spaced_scans_.is_full()) return;
   ambiguity_ += search::kAmbiguitySmoothing * (depth_of_second_minimum(axis) - ambiguity_);
 }

@@ -32,17 +32,18 @@ class MotionCheck {
   /// The next scan as it was tracked. If its returns were compensated, both poses are the last one.
   void add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
            const ScanTiming& timing);
-  /// To be called once after each add(). Whether another motion was significantly better both now
-  /// and the last time. `axis`: horizontal unit vector along or across the surroundings.
-  bool check(const Eigen::Vector2d& axis);
-  /// To be called once after each check(). Looks for a second minimum over 15 scans
-  /// (kAmbiguityStride). `has_weak_direction`: of the newest scan.
-  void observe_ambiguity(const Eigen::Vector2d& axis, bool has_weak_direction);
+  /// To be called once after each add(). Compares the tracked motion with others. Returns whether
+  /// another one was significantly better both now and the last time. `axis`: horizontal unit
+  /// vector along or across the surroundings.
+  bool compare(const Eigen::Vector2d& axis);
+  /// To be called once after each compare(). Looks for a second minimum over 15 scans
+  /// (kAmbiguityStride). `is_dead_reckoned`: along a direction, during the newest scan.
+  void observe_ambiguity(const Eigen::Vector2d& axis, bool is_dead_reckoned);
   /// Whether there has been one for some time.
   [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }
   /// Whether it just ended after kAmbiguousScans or more. How far the sensor came meanwhile is not
-  /// known, and the map is that of one of two motions. False if most of these scans had a weak
-  /// direction, as in a tunnel: the prior held the pose along it.
+  /// known, and the map is that of one of two motions. False if the motion was dead reckoned during
+  /// most of these scans, as in a tunnel: the covariance grew.
   [[nodiscard]] bool ambiguity_ended() const { return ambiguity_ended_; }
 
  private:
@@ -59,7 +60,7 @@ class MotionCheck {
   int times_refuted_ = 0;              // on end
   double ambiguity_ = 0.0;             // sigmas
   int ambiguous_scans_ = 0;            // in a row
-  int weak_scans_ = 0;                 // of these, with a weak direction
+  int dead_reckoned_scans_ = 0;        // of these
   bool ambiguity_ended_ = false;       // with the newest
   StructurePoints structure_;          // of the newest
   TopDownGrid grid_;

@@ -55,8 +55,9 @@ class LocalOdometry {
   [[nodiscard]] bool is_stationary() const { return stationary_.is_stationary(); }
   /// The sensor is assumed to be stationary where it is.
   void assume_stationary() { stationary_.assume(state_.T_odom_sensor.translation_m); }
-  /// Finds the weak directions of a scan that was accepted. Along them the motion is dead reckoned,
-  /// and the covariance of the pose grows.
+  /// Finds the weak directions of a scan that was accepted. Along those of which it tells next to
+  /// nothing the motion is dead reckoned (is_dead_reckoned()), and the covariance of the pose
+  /// grows.
   WeakDirections find_weak_directions(const ScanTiming& scan, const Solution& solution);
   /// Learns how fast the motion changes, from a scan that was aligned (ProcessNoise).
   void observe_noise(const ScanTiming& scan, const Solution& solution);

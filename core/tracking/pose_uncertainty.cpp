@@ -5,7 +5,24 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
+
 namespace lilo::core {
+namespace {
+
+bool is_translation(const WeakDirection& weak) {
+  return weak.direction.head<3>().norm() >= tracking::kMostlyTurns_m;
+}
+
+}  // namespace
+
+bool is_dead_reckoned(const WeakDirection& weak) {
+  return is_translation(weak) && weak.from_scan < tracking::kDeadReckonedShare;
+}
+
+bool is_any_dead_reckoned(const WeakDirections& weak) {
+  return std::any_of(weak.all.begin(), weak.all.begin() + weak.count, is_dead_reckoned);
+}
 
 void PoseUncertainty::begin_map(const MotionState& state) {
   drift_.begin(covariance(state));  // the sensor's axes are the new map's
@@ -24,18 +41,17 @@ void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state
                             const Vector6d& density, double span_s) {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
   int count = 0;
+  bool sees_all = true;
   for (int k = 0; k < weak.count && count < 3; ++k) {
     const WeakDirection& one = weak.all[static_cast<std::size_t>(k)];
-    const Eigen::Vector3d along = one.direction.head<3>();  // m
-    if (one.from_scan > tracking::kDeadReckonedShare || along.norm() < tracking::kMostlyTurns_m) {
-      continue;
-    }
-    axes.col(count++) = state.T_odom_sensor.rotation * along.normalized();
+    sees_all = sees_all && !is_translation(one);
+    if (!is_dead_reckoned(one)) continue;
+    axes.col(count++) = state.T_odom_sensor.rotation * one.direction.head<3>().normalized();
   }
-  if (count == 0) {
-    drift_.see(span_s);
-  } else {
+  if (count > 0) {
     drift_.coast(axes, density.segment<2>(3).mean(), span_s);
+  } else if (sees_all) {
+    drift_.see(span_s);
   }
 }
 

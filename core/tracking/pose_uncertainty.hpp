@@ -8,6 +8,11 @@
 
 namespace lilo::core {
 
+/// Whether it is a translation of which the scan tells next to nothing.
+bool is_dead_reckoned(const WeakDirection& weak);
+/// Whether any of them is.
+bool is_any_dead_reckoned(const WeakDirections& weak);
+
 /// The covariance of the pose, rotation then translation. It is the covariance of the alignment
 /// with the map, scaled by how much residuals vary from azimuth to azimuth, plus that of the map's
 /// drift.
@@ -23,6 +28,8 @@ class PoseUncertainty {
   /// A scan was aligned (Solution::design_effect).
   void learn(const Vector6d& design_effect);
   /// The weak directions (sensor's axes) of a scan that lasted `span_s`; `density`: process noise.
+  /// Along those of which the scan tells next to nothing the motion is dead reckoned
+  /// (is_dead_reckoned()).
   void learn(const WeakDirections& weak, const MotionState& state, const Vector6d& density,
              double span_s);
   /// The sensor has moved on.

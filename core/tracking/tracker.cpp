@@ -67,7 +67,7 @@ Estimate Tracker::align(const Scan& scan, std::vector<Feature>& features, StageH
   alignment_ = judge(*solution);
   accept(prior);
   watch_session();
-  if (!is_first() && alignment_.status != TrackingStatus::lost) {
+  if (!is_first() && !is_lost()) {
     alignment_.weak = local_.find_weak_directions(scan_.timing, alignment_.solution);
   }
   Estimate result = estimate(scan);
@@ -83,7 +83,7 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
   // The result counts from the next scan on: the pose of this one is out.
   if (is_checked()) {
     motion_check_.observe_ambiguity(least_known_axis(alignment_.solution),
-                                    alignment_.weak.count > 0);
+                                    is_any_dead_reckoned(alignment_.weak));
   }
   local_.grow_map(scan_, features, alignment_.solution, use);
   hook(Stage::update_map);
@@ -126,7 +126,7 @@ void Tracker::begin_map() {
 Prior Tracker::begin_scan(const std::vector<Feature>& features) {
   if (phase_ == Phase::starting) {
     if (initializer_.must_begin_again(scan_.timing, features.size(), local_.state())) begin_map();
-    const bool was_lost = alignment_.status == TrackingStatus::lost;
+    const bool was_lost = is_lost();
     const bool is_known = initializer_.add(scan_, features, was_lost, local_);
     if (!is_known) return local_.predict(scan_.timing);
   }
@@ -249,7 +249,7 @@ bool Tracker::check_motion() {
   const Pose& T_end = local_.state().T_odom_sensor;
   const Pose T_begin = scan_.timing.motion_compensated ? T_end : solution.trajectory.at(0.0);
   motion_check_.add(*scan_.features, T_begin, T_end, scan_.timing);
-  return motion_check_.check(least_known_axis(solution));
+  return motion_check_.compare(least_known_axis(solution));
 }
 
 /// Decides whether the session is over.

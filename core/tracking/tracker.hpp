@@ -76,7 +76,7 @@ class Tracker {
   };
   void begin_session();
   void begin_map();
-  /// Whether the last scan was not found in the map, or its motion was refuted.
+  /// Whether the scan judged last was not found in the map, or its motion was refuted.
   [[nodiscard]] bool is_lost() const { return alignment_.status == TrackingStatus::lost; }
   [[nodiscard]] bool is_first() const { return initializer_.scans() == 1; }
   Prior begin_scan(const std::vector<Feature>& features);

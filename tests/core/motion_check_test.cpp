@@ -65,7 +65,7 @@ int scans_until_refuted(bool has_posts, double tracked_mps, const Eigen::Vector2
     begin.translation_m.x() = tracked_mps * (end_s - kSpan_s);
     end.translation_m.x() = tracked_mps * end_s;
     check.add(road.scan(end_s), begin, end, timing(1e9 * end_s));
-    if (check.check(axis)) return k;
+    if (check.compare(axis)) return k;
   }
   return 100;
 }
@@ -97,7 +97,7 @@ TEST(MotionCheck, WhereScansDoNotMeetNothingIsRefuted) {
       f.kind = FeatureKind::structure;
     }
     check.add(features, {}, {}, timing(1e9 * kSpan_s * k));
-    EXPECT_FALSE(check.check({1.0, 0.0}));
+    EXPECT_FALSE(check.compare({1.0, 0.0}));
   }
 }
 
@@ -107,7 +107,7 @@ TEST(MotionCheck, AfterAClearItBeginsAgain) {
   for (int k = 1; k < 50; ++k) {
     if (k % 5 == 0) check.clear();
     check.add(road.scan(kSpan_s * k), {}, {}, timing(1e9 * kSpan_s * k));
-    EXPECT_FALSE(check.check({1.0, 0.0})) << "five scans are too few";
+    EXPECT_FALSE(check.compare({1.0, 0.0})) << "five scans are too few";
   }
 }
 
@@ -158,7 +158,7 @@ void take(MotionCheck& check, int k, const std::vector<Feature>& features,
   begin.translation_m.x() = tracked_mps * kSpan_s * (k - 1);
   end.translation_m.x() = tracked_mps * kSpan_s * k;
   check.add(features, begin, end, timing(1e9 * kSpan_s * k));
-  check.check({1.0, 0.0});
+  check.compare({1.0, 0.0});
   check.observe_ambiguity({1.0, 0.0}, has_weak_direction);
 }
 

@@ -100,7 +100,7 @@ TEST(PoseUncertainty, AnotherMapBeginsAsUncertainAsThePoseWas) {
 }
 
 // A position under white noise q on acceleration is uncertain by q t^3 / 3.
-TEST(PoseUncertainty, AWeakDirectionIsDeadReckoned) {
+TEST(PoseUncertainty, AnUnseenDirectionIsDeadReckoned) {
   constexpr double kScan_s = 0.01;
   const Vector6d density = six(0.3, 0.3, 0.3, 2.0, 4.0, 100.0);  // 3 on the ground plane
   MotionState state = exact_state();
@@ -116,7 +116,7 @@ TEST(PoseUncertainty, AWeakDirectionIsDeadReckoned) {
   EXPECT_NEAR(of_odometry(4, 4), of_sensor(3, 3), 1e-9);
 }
 
-TEST(PoseUncertainty, EveryWeakDirectionIsDeadReckoned) {
+TEST(PoseUncertainty, EveryUnseenDirectionIsDeadReckoned) {
   PoseUncertainty uncertainty{kDataWeight};
   WeakDirections weak;
   weak.count = 3;
@@ -131,13 +131,35 @@ TEST(PoseUncertainty, EveryWeakDirectionIsDeadReckoned) {
   EXPECT_NEAR(after(5, 5), before(5, 5), 1e-9);
 }
 
-// The scan has a third of what is known of the direction; the alignment counts it.
-TEST(PoseUncertainty, WhatTheScanTellsOfAWeakDirectionHoldsThePose) {
+// Of x the scan tells next to nothing, of y it gives a third.
+TEST(PoseUncertainty, OnlyADirectionOfWhichTheScanTellsNextToNothingIsDeadReckoned) {
   PoseUncertainty uncertainty(kDataWeight);
-  WeakDirections weak = weak_along(six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0));
-  weak.all[0].from_scan = 1.0 / 3.0;
-  for (int k = 0; k < 10; ++k) uncertainty.learn(weak, exact_state(), Vector6d::Ones(), 0.1);
-  EXPECT_NEAR(uncertainty.covariance(exact_state())(3, 3), 0.0, 1e-12);
+  WeakDirections weak;
+  weak.count = 2;
+  weak.all[0] = {.direction = six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0), .from_scan = 0.05};
+  weak.all[1] = {.direction = six(0.0, 1.0, 0.0, 0.0, 0.0, 0.0), .from_scan = 1.0 / 3.0};
+  uncertainty.learn(weak, exact_state(), Vector6d::Ones(), 0.1);
+  const Matrix6d covariance = uncertainty.covariance(exact_state());
+  EXPECT_NEAR(covariance(3, 3), 1e-3, 1e-9);  // q t^2 dt of one scan
+  EXPECT_NEAR(covariance(4, 4), 0.0, 1e-12);
+}
+
+// Dead reckoning goes on after it: the velocity is no better known. A scan that tells of all
+// translations ends it.
+TEST(PoseUncertainty, AScanThatGivesAThirdRestoresNoVelocity) {
+  constexpr double kScan_s = 0.1;
+  const auto grown_after = [&](const WeakDirections& between) {
+    PoseUncertainty uncertainty(kDataWeight);
+    const WeakDirections unseen = weak_along(six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0));
+    for (const WeakDirections& scan : {unseen, between, unseen}) {
+      uncertainty.learn(scan, exact_state(), Vector6d::Ones(), kScan_s);
+    }
+    return uncertainty.covariance(exact_state())(3, 3);
+  };
+  WeakDirections third = weak_along(six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0));
+  third.all[0].from_scan = 1.0 / 3.0;
+  EXPECT_NEAR(grown_after(third), (1.0 + 4.0) * 1e-3, 1e-9);
+  EXPECT_NEAR(grown_after(WeakDirections{}), (1.0 + 1.0) * 1e-3, 1e-9);
 }
 
 TEST(PoseUncertainty, WeaknessThatMostlyTurnsIsNotDeadReckoned) {

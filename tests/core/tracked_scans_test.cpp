@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Six scans of posts, laid over each other as a stationary sensor and as a moving one saw them.
+// Six scans of nine posts, laid over each other under several motions.
 #include "core/search/tracked_scans.hpp"
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -12,57 +12,63 @@ namespace lilo::core {
 namespace {
 
 constexpr int kPosts = 9;
+constexpr int kScans = static_cast<int>(search::kMotionScans);
 constexpr double kScan_s = 0.1;
+constexpr double kSpeed_mps = 10.0;  // a post moves by two cells from scan to scan
+constexpr int kNoLimit = std::numeric_limits<int>::max();
 
-/// Posts on the left, 10 m apart, in the middle of a cell of the grid.
-std::vector<Feature> posts() {
+Pose at(double x_m) { return {Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}}; }
+
+/// What a sensor sees that drives along x: posts on its left, 25 m apart, in the middle of a cell.
+/// Every other one is hit by the first firing, the others by the last.
+std::vector<Feature> posts_seen(double speed_mps, double begin_s) {
   std::vector<Feature> features;
   for (int k = 0; k < kPosts; ++k) {
     Feature post{};
-    post.x_m = 10.0F * static_cast<float>(k) + 0.25F;
+    post.s = static_cast<float>(k % 2);
+    const double x_m = 25.0 * (k - kPosts / 2) + 0.25;
+    post.x_m = static_cast<float>(x_m - speed_mps * (begin_s + kScan_s * (k % 2)));
     post.y_m = 20.25F;
-    post.s = 1.0F;
     post.kind = FeatureKind::structure;
     features.push_back(post);
   }
   return features;
 }
 
-class TrackedScansTest : public testing::Test {
- protected:
-  TrackedScansTest() {
-    StructurePoints structure;
-    structure.reserve(kPosts);
-    structure.assign(posts());
-    for (int k = 0; k < static_cast<int>(search::kMotionScans); ++k) {
-      const auto end_ns = static_cast<std::int64_t>(1e9 * kScan_s) * (k + 1);
-      scans_.add(structure, {}, {}, {end_ns - static_cast<std::int64_t>(1e9 * kScan_s), end_ns});
-    }
+/// Cells that all scans occupy under `faster_mps`.
+int occupied(double true_mps, double tracked_mps, const Eigen::Vector2d& faster_mps,
+             int limit = kNoLimit) {
+  TrackedScans scans(kPosts);
+  TopDownGrid grid(kPosts);
+  StructurePoints structure;
+  for (int k = 0; k < kScans; ++k) {
+    const double begin_s = kScan_s * k, end_s = begin_s + kScan_s;
+    structure.assign(posts_seen(true_mps, begin_s));
+    scans.add(structure, at(tracked_mps * begin_s), at(tracked_mps * end_s),
+              {std::llround(1e9 * begin_s), std::llround(1e9 * end_s)});
   }
-  int occupied_under(double faster_mps, int limit) {
-    return scans_.occupied_under({faster_mps, 0.0}, Subsample::all, grid_, limit);
-  }
-
-  static constexpr int kNoLimit = std::numeric_limits<int>::max();
-  TrackedScans scans_{kPosts};
-  TopDownGrid grid_{kPosts};
-};
-
-TEST_F(TrackedScansTest, UnderTheTrueMotionEveryScanSeesTheSameCells) {
-  EXPECT_EQ(occupied_under(0.0, kNoLimit), kPosts);
+  return scans.occupied_under(faster_mps, Subsample::all, grid, limit);
 }
 
-// 10 m/s move a post by two cells from scan to scan.
-TEST_F(TrackedScansTest, UnderAnotherMotionEveryScanHasCellsOfItsOwn) {
-  EXPECT_EQ(occupied_under(10.0, kNoLimit), 6 * kPosts);
+TEST(TrackedScans, UnderTheTrueMotionEveryScanSeesTheSameCells) {
+  EXPECT_EQ(occupied(0.0, 0.0, {0.0, 0.0}), kPosts);
+  EXPECT_EQ(occupied(kSpeed_mps, kSpeed_mps, {0.0, 0.0}), kPosts);
+  EXPECT_EQ(occupied(kSpeed_mps, 0.0, {kSpeed_mps, 0.0}), kPosts);
+  EXPECT_EQ(occupied(0.0, kSpeed_mps, {-kSpeed_mps, 0.0}), kPosts);
 }
 
-TEST_F(TrackedScansTest, GivesTheLimitWhereThereAreAsManyOrMore) {
-  EXPECT_EQ(occupied_under(10.0, 6 * kPosts + 1), 6 * kPosts);
-  for (const int limit : {1, kPosts, 2 * kPosts + 1, 6 * kPosts}) {
-    EXPECT_EQ(occupied_under(10.0, limit), limit);
+TEST(TrackedScans, UnderAnotherMotionEveryScanHasCellsOfItsOwn) {
+  EXPECT_EQ(occupied(kSpeed_mps, 0.0, {0.0, 0.0}), kScans * kPosts);
+  EXPECT_EQ(occupied(kSpeed_mps, 0.0, {-kSpeed_mps, 0.0}), kScans * kPosts);
+  EXPECT_EQ(occupied(0.0, 0.0, {0.0, kSpeed_mps}), kScans * kPosts);
+}
+
+TEST(TrackedScans, GivesTheLimitWhereThereAreAsManyOrMore) {
+  EXPECT_EQ(occupied(0.0, 0.0, {kSpeed_mps, 0.0}, kScans * kPosts + 1), kScans * kPosts);
+  for (const int limit : {1, kPosts, 2 * kPosts + 1, kScans * kPosts}) {
+    EXPECT_EQ(occupied(0.0, 0.0, {kSpeed_mps, 0.0}, limit), limit);
   }
-  EXPECT_EQ(occupied_under(0.0, kPosts + 1), kPosts);
+  EXPECT_EQ(occupied(0.0, 0.0, {0.0, 0.0}, kPosts + 1), kPosts);
 }
 
 }  // namespace
