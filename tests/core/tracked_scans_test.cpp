@@ -26,7 +26,7 @@ std::vector<Feature> posts_seen(double speed_mps, double begin_s) {
   for (int k = 0; k < kPosts; ++k) {
     Feature post{};
     post.s = static_cast<float>(k % 2);
-    const double x_m = 25.0 * (k - kPosts / 2) + 0.25;
+    const double x_m = 25.0 * k - 99.75;
     post.x_m = static_cast<float>(x_m - speed_mps * (begin_s + kScan_s * (k % 2)));
     post.y_m = 20.25F;
     post.kind = FeatureKind::structure;
