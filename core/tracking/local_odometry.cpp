@@ -34,7 +34,7 @@ LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_featu
 void LocalOdometry::accept(const ScanTiming& scan, const Solution& solution) {
   const Trajectory& trajectory = solution.trajectory;
   move_to({trajectory.end(), trajectory.end_twist(), solution.end_information, scan.end_ns});
-  uncertainty_.learn(solution.design_effect);
+  uncertainty_.learn(solution.design_effect, solution.data_information);
 }
 
 void LocalOdometry::accept_prediction(const ScanTiming& scan, const Prior& prior) {

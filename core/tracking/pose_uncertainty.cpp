@@ -3,6 +3,7 @@
 
 #include "core/constants.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -28,7 +29,8 @@ void PoseUncertainty::begin_map(const MotionState& state) {
   drift_.begin(covariance(state));  // the sensor's axes are the new map's
 }
 
-void PoseUncertainty::learn(const Vector6d& design_effect) {
+void PoseUncertainty::learn(const Vector6d& design_effect, const Matrix6d& data_information) {
+  data_information_ = data_weight_ * data_information;
   design_effect_ += tracking::kDesignEffectSmoothing *
                     (design_effect.cwiseMax(tracking::kLeastDesignEffect) - design_effect_);
 }
@@ -55,14 +57,25 @@ void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state
   }
 }
 
-/// Against the map, in the odometry's axes.
+/// Against the map, in the odometry's axes. The information comes from the scan and from the prior.
+/// The design effect is that of the scan's residuals; the prior counts as it is. So the covariance
+/// is the sandwich C (P + S D S) C of the information C^-1 = P + D (Liang and Zeger, 1986).
 Matrix6d PoseUncertainty::of_alignment(const MotionState& state) const {
   // The error of a cell is the same for all scans that are matched with it: so many of them count
   // as one. What is the same for longer is for Drift.
   const double unit = tracking::kScansSharingErrors * data_weight_;
   const Vector6d scale = (unit * design_effect_).cwiseSqrt();
-  return scale.asDiagonal() * state.information.inverse().topLeftCorner<6, 6>() *
-         scale.asDiagonal();
+  const Matrix6d C = state.information.inverse().topLeftCorner<6, 6>();
+  const Matrix6d scaled = scale.asDiagonal() * C * scale.asDiagonal();
+  // V' C^-1 V = I, and V' D V is diagonal: the scan's share of each direction. Over the scan as a
+  // whole it may know more than of the pose at its end.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> solver(data_information_, C.inverse());
+  if (solver.info() != Eigen::Success || !solver.eigenvectors().allFinite()) return scaled;
+  const Vector6d from_scan = solver.eigenvalues().cwiseMax(0.0).cwiseMin(1.0);
+  const Matrix6d back = solver.eigenvectors().inverse();
+  const Matrix6d D = back.transpose() * from_scan.asDiagonal() * back;
+  const Matrix6d P = back.transpose() * (Vector6d::Ones() - from_scan).asDiagonal() * back;
+  return C * (P + scale.asDiagonal() * D * scale.asDiagonal()) * C;
 }
 
 Matrix6d PoseUncertainty::covariance(const MotionState& state) const {

@@ -25,8 +25,8 @@ class PoseUncertainty {
   void begin_map(const MotionState& state);
   /// The same map is begun once more.
   void rewind() { drift_.rewind(); }
-  /// A scan was aligned (Solution::design_effect).
-  void learn(const Vector6d& design_effect);
+  /// A scan was aligned (Solution::design_effect, Solution::data_information).
+  void learn(const Vector6d& design_effect, const Matrix6d& data_information);
   /// The weak directions (sensor's axes) of a scan that lasted `span_s`; `density`: process noise.
   /// Along those of which the scan tells next to nothing the motion is dead reckoned
   /// (is_dead_reckoned()).
@@ -48,6 +48,8 @@ class PoseUncertainty {
   double data_weight_;
   Vector6d design_effect_ =
       Vector6d::Constant(tracking::kLeastDesignEffect);  // mean of the last second
+  /// Of the last scan, as the solver weights it. Before there is one, all is taken for the scan's.
+  Matrix6d data_information_ = 1e12 * Matrix6d::Identity();
   Drift drift_;
 };
 

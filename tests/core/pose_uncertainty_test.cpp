@@ -17,6 +17,9 @@ constexpr int kOldMap = 100;  // keyframes: each is a thirteenth of what is seen
 
 const Eigen::Quaterniond kLeft(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
 
+/// A scan that tells the whole pose.
+const Matrix6d kAllFromScan = 1e12 * Matrix6d::Identity();
+
 /// A state whose pose has these variances by its information (rotation, translation).
 MotionState state_of(const Vector6d& variance) {
   MotionState state;
@@ -46,7 +49,7 @@ TEST(PoseUncertainty, AnAlignmentCountsByItsDesignEffect) {
   const Vector6d effect = six(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
   PoseUncertainty uncertainty(kDataWeight);
   for (int scan = 1; scan <= 30; ++scan) {
-    uncertainty.learn(effect);
+    uncertainty.learn(effect, kAllFromScan);
     // A running mean in which the newest scan has a tenth, from the least on.
     const Vector6d mean =
         effect.array() + (kLeastDesignEffect - effect.array()) * std::pow(0.9, scan);
@@ -56,9 +59,23 @@ TEST(PoseUncertainty, AnAlignmentCountsByItsDesignEffect) {
   }
 }
 
+// The design effect is about residuals: what the prior tells counts as it is.
+TEST(PoseUncertainty, WhatThePriorTellsDoesNotCountByTheDesignEffect) {
+  const Vector6d variance = six(1e-6, 2e-6, 3e-6, 4e-4, 5e-4, 6e-4);
+  const Vector6d from_scan = six(0.0, 0.1, 0.25, 0.5, 0.9, 1.0);
+  PoseUncertainty uncertainty(kDataWeight);
+  const Vector6d data = from_scan.cwiseQuotient(variance) / kDataWeight;
+  uncertainty.learn(Vector6d::Zero(), data.asDiagonal());
+  const Matrix6d covariance = uncertainty.covariance(state_of(variance));
+  for (int k = 0; k < 6; ++k) {
+    const double part = 1.0 - from_scan[k] + from_scan[k] * kUnit * kLeastDesignEffect;
+    EXPECT_NEAR(covariance(k, k) / (part * variance[k]), 1.0, 1e-9) << k;
+  }
+}
+
 TEST(PoseUncertainty, ASimulationWithoutNoiseIsNoReasonToBeSure) {
   PoseUncertainty uncertainty(kDataWeight);
-  for (int scan = 0; scan < 1000; ++scan) uncertainty.learn(Vector6d::Zero());
+  for (int scan = 0; scan < 1000; ++scan) uncertainty.learn(Vector6d::Zero(), kAllFromScan);
   const Matrix6d covariance = uncertainty.covariance(state_of(Vector6d::Constant(1e-4)));
   EXPECT_NEAR(covariance(3, 3), kUnit * kLeastDesignEffect * 1e-4, 1e-12);
 }
