@@ -66,7 +66,7 @@ Matrix6d PoseUncertainty::of_alignment(const MotionState& state) const {
   const double unit = tracking::kScansSharingErrors * data_weight_;
   const Vector6d scale = (unit * design_effect_).cwiseSqrt();
   const Matrix6d C = state.information.inverse().topLeftCorner<6, 6>();
-  const Matrix6d scaled = scale.asDiagonal() * C * scale.asDiagonal();
+  Matrix6d scaled = scale.asDiagonal() * C * scale.asDiagonal();
   // V' C^-1 V = I, and V' D V is diagonal: the scan's share of each direction. Over the scan as a
   // whole it may know more than of the pose at its end.
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> solver(data_information_, C.inverse());
