@@ -330,7 +330,7 @@ inline constexpr double kScansSharingErrors = 3.0;
 /// Part of the information from the scan below which the motion along a weak direction is dead
 /// reckoned. Along a smooth tunnel a scan still seems to give 0.03 to 0.1, because noise tilts the
 /// normals. Other weak directions mostly have 0.2 or more; there only the alignment's covariance
-/// counts. Range: 0.1 to 0.25.
+/// counts. Range: 0.1 to 0.25, by NEES.
 inline constexpr double kDeadReckonedShare = 0.15;
 /// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
 inline constexpr double kMostlyTurns_m = 0.3;

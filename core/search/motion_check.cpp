@@ -60,8 +60,8 @@ int MotionCheck::least_occupied(const Eigen::Vector2d& axis, Subsample subsample
 bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
   // A motion that is clearly better with all points is mostly better with a quarter of them too.
   const Eigen::Vector2d as_tracked = Eigen::Vector2d::Zero();
-  const int quarter = scans_.occupied_under(as_tracked, Subsample::quarter, grid_);
-  if (least_occupied(axis, Subsample::quarter, quarter) == quarter) return false;
+  const int of_quarter = scans_.occupied_under(as_tracked, Subsample::quarter, grid_);
+  if (least_occupied(axis, Subsample::quarter, of_quarter) == of_quarter) return false;
   const int tracked = scans_.occupied_under(as_tracked, Subsample::all, grid_);
   const int least = least_occupied(axis, Subsample::all, tracked);
   const int alone = scans_.occupied_alone(grid_);

@@ -66,15 +66,15 @@ Matrix6d PoseUncertainty::of_alignment(const MotionState& state) const {
   const double unit = tracking::kScansSharingErrors * data_weight_;
   const Vector6d scale = (unit * design_effect_).cwiseSqrt();
   const Matrix6d C = state.information.inverse().topLeftCorner<6, 6>();
-  Matrix6d scaled = scale.asDiagonal() * C * scale.asDiagonal();
-  // V' C^-1 V = I, and V' D V is diagonal: the scan's share of each direction. Over the scan as a
-  // whole it may know more than of the pose at its end.
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> solver(data_information_, C.inverse());
-  if (solver.info() != Eigen::Success || !solver.eigenvectors().allFinite()) return scaled;
+  const Matrix6d information = C.inverse();
+  // V' C^-1 V = I, and V' D V is diagonal: the scan's share of each direction. The information of
+  // all poses in the scan may be more than that of the pose at its end; then the share is 1.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> solver(data_information_, information);
+  if (solver.info() != Eigen::Success) return C;
   const Vector6d from_scan = solver.eigenvalues().cwiseMax(0.0).cwiseMin(1.0);
   const Matrix6d back = solver.eigenvectors().inverse();
   const Matrix6d D = back.transpose() * from_scan.asDiagonal() * back;
-  const Matrix6d P = back.transpose() * (Vector6d::Ones() - from_scan).asDiagonal() * back;
+  const Matrix6d P = information - D;
   return C * (P + scale.asDiagonal() * D * scale.asDiagonal()) * C;
 }
 

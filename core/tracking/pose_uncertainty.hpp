@@ -14,8 +14,8 @@ bool is_dead_reckoned(const WeakDirection& weak);
 bool is_any_dead_reckoned(const WeakDirections& weak);
 
 /// The covariance of the pose, rotation then translation. It is the covariance of the alignment
-/// with the map, scaled by how much residuals vary from azimuth to azimuth, plus that of the map's
-/// drift.
+/// with the map, in which the scan's part is scaled by how much residuals vary from azimuth to
+/// azimuth, plus that of the map's drift.
 class PoseUncertainty {
  public:
   /// `data_weight`: of a residual (SolverConfig).

@@ -29,6 +29,13 @@ bool has_possible_velocity(const Solution& solution, const Prior& prior, double 
          motion::kImpossibleAcceleration_mps2 * (unseen_s + prior.span_s);
 }
 
+/// Whether an alignment found too little of the scan in the map. `fit`: StructureFit::relative().
+bool matches_too_little(const Solution& solution, double fit) {
+  // A number, not a part of the features: in a park a fifth of them may match in a good alignment.
+  return static_cast<std::size_t>(solution.matched) < tracking::kMinFeatures ||
+         fit < registration::kChanceFit;
+}
+
 }  // namespace
 
 Tracker::Tracker(const OdometryConfig& config)
@@ -139,10 +146,8 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
 Solution Tracker::align_from_prediction(const Prior& prior) {
   Solution found = local_.align(*scan_.features, prior, scan_.levels);
   if (phase_ == Phase::starting) return found;
-  if (!matches_too_little(found) &&
-      history_.fit.relative(found, scan_.structure) > registration::kDoubtfulFit) {
-    return found;
-  }
+  const double fit = history_.fit.relative(found, scan_.structure);
+  if (!matches_too_little(found, fit) && fit > registration::kDoubtfulFit) return found;
   return local_.align(*scan_.features, prior, scan_.levels, Sides::both);
 }
 
@@ -177,24 +182,17 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
   }
   const std::optional<Solution> found =
       relocalizer_.find(scan_, prior, at_prediction, history_, local_);
-  const bool is_found = found && !matches_too_little(*found) &&
-                        has_possible_velocity(*found, prior, unseen_s) &&
-                        (is_searchable || is_predicted(*found));
+  const bool is_found =
+      found && !matches_too_little(*found, history_.fit.relative(*found, scan_.structure)) &&
+      has_possible_velocity(*found, prior, unseen_s) && (is_searchable || is_predicted(*found));
   return is_found ? *found : local_.unaligned(prior);
-}
-
-/// Whether an alignment found too little of the scan in the map.
-bool Tracker::matches_too_little(const Solution& solution) const {
-  // A number, not a part of the features: in a park a fifth of them may match in a good alignment.
-  return static_cast<std::size_t>(solution.matched) < tracking::kMinFeatures ||
-         history_.fit.relative(solution, scan_.structure) < registration::kChanceFit;
 }
 
 Tracker::Alignment Tracker::judge(const Solution& solution) const {
   Alignment a{.solution = solution};
   if (is_first()) return a;
   const double fit = history_.fit.relative(solution, scan_.structure);
-  if (matches_too_little(solution)) {
+  if (matches_too_little(solution, fit)) {
     a.status = TrackingStatus::lost;
     a.is_explained = false;
     return a;

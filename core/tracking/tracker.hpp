@@ -83,7 +83,6 @@ class Tracker {
   Solution align_from_prediction(const Prior& prior);
   std::optional<Solution> solve(const Prior& predicted);
   std::optional<Solution> relocalize(const Solution& at_prediction, const Prior& prior);
-  [[nodiscard]] bool matches_too_little(const Solution& solution) const;
   [[nodiscard]] Alignment judge(const Solution& solution) const;
   void accept(const Prior& prior);
   [[nodiscard]] bool is_checked() const;

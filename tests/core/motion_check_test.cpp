@@ -153,13 +153,13 @@ class Lanes {
 
 /// Takes the scan number `k`, tracked along x.
 void take(MotionCheck& check, int k, const std::vector<Feature>& features,
-          double tracked_mps = kSpeed_mps, bool has_weak_direction = false) {
+          double tracked_mps = kSpeed_mps, bool is_dead_reckoned = false) {
   Pose begin, end;
   begin.translation_m.x() = tracked_mps * kSpan_s * (k - 1);
   end.translation_m.x() = tracked_mps * kSpan_s * k;
   check.add(features, begin, end, timing(1e9 * kSpan_s * k));
   check.compare({1.0, 0.0});
-  check.observe_ambiguity({1.0, 0.0}, has_weak_direction);
+  check.observe_ambiguity({1.0, 0.0}, is_dead_reckoned);
 }
 
 /// Scans of 100 after which the motion is ambiguous.
