@@ -65,7 +65,7 @@ Matrix6d PoseUncertainty::of_alignment(const MotionState& state) const {
   // as one. What is the same for longer is for Drift.
   const double unit = tracking::kScansSharingErrors * data_weight_;
   const Vector6d scale = (unit * design_effect_).cwiseSqrt();
-  const Matrix6d C = state.information.inverse().topLeftCorner<6, 6>();
+  Matrix6d C = state.information.inverse().topLeftCorner<6, 6>();
   const Matrix6d information = C.inverse();
   // V' C^-1 V = I, and V' D V is diagonal: the scan's share of each direction. The information of
   // all poses in the scan may be more than that of the pose at its end; then the share is 1.
