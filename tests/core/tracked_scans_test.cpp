@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -15,6 +16,7 @@ constexpr int kPosts = 9;
 constexpr int kScans = static_cast<int>(search::kMotionScans);
 constexpr double kScan_s = 0.1;
 constexpr double kSpeed_mps = 10.0;  // a post moves by two cells from scan to scan
+constexpr double kSwing_rad = 0.05;  // in a scan; a post 100 m away moves by ten cells
 constexpr int kNoLimit = std::numeric_limits<int>::max();
 
 Pose at(double x_m) { return {Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}}; }
@@ -61,6 +63,35 @@ TEST(TrackedScans, UnderAnotherMotionEveryScanHasCellsOfItsOwn) {
   EXPECT_EQ(occupied(kSpeed_mps, 0.0, {0.0, 0.0}), kScans * kPosts);
   EXPECT_EQ(occupied(kSpeed_mps, 0.0, {-kSpeed_mps, 0.0}), kScans * kPosts);
   EXPECT_EQ(occupied(0.0, 0.0, {0.0, kSpeed_mps}), kScans * kPosts);
+}
+
+/// By hand a sensor looks to the left and to the right: from scan to scan the yaw rate changes its
+/// sign, and the first firing of a scan sees a post elsewhere than the last one would.
+TEST(TrackedScans, ASensorThatSwingsSeesTheSameCells) {
+  TrackedScans scans(kPosts);
+  TopDownGrid grid(kPosts);
+  StructurePoints structure;
+  const auto turned = [](double yaw_rad) {
+    return Pose{Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())),
+                Eigen::Vector3d::Zero()};
+  };
+  for (int k = 0; k < kScans; ++k) {
+    const double begin_s = kScan_s * k, end_s = begin_s + kScan_s;
+    const std::array<Pose, 2> by_s{turned(k % 2 == 0 ? 0.0 : kSwing_rad),
+                                   turned(k % 2 == 0 ? kSwing_rad : 0.0)};
+    std::vector<Feature> features = posts_seen(0.0, begin_s);
+    for (Feature& post : features) {
+      const Pose& T = by_s[static_cast<std::size_t>(post.s)];
+      const Eigen::Vector3d seen_m =
+          T.inverse() * Eigen::Vector3f(post.x_m, post.y_m, post.z_m).cast<double>();
+      post.x_m = static_cast<float>(seen_m.x());
+      post.y_m = static_cast<float>(seen_m.y());
+    }
+    structure.assign(features);
+    scans.add(structure, by_s[0], by_s[1],
+              {std::llround(1e9 * begin_s), std::llround(1e9 * end_s)});
+  }
+  EXPECT_EQ(scans.occupied_under({0.0, 0.0}, Subsample::all, grid, kNoLimit), kPosts);
 }
 
 TEST(TrackedScans, GivesTheLimitWhereThereAreAsManyOrMore) {
