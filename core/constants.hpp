@@ -165,6 +165,9 @@ inline constexpr double kNoiseSmoothing = 0.1;
 /// middles of two. Rotation (range: 8 to 16; with 32 one of 16 drives through rooms was lost) and
 /// translation (range: 1 to 8), which shaking changes less: 5 m/s^2 are 5 mm at 5 Hz, 0.3 at 20 Hz.
 inline constexpr double kFasterRotation = 16.0, kFasterTranslation = 8.0;
+/// Changes of the motion, after a map was begun, that tell how uncertain its first scan is. Range:
+/// 5 to 20, by NEES.
+inline constexpr int kStartChanges = 5;
 /// Seconds: shorter intervals between scans tell no process noise.
 inline constexpr double kLeastInterval_s = 0.01;
 

@@ -25,17 +25,22 @@ void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns, const Ve
     const Vector6d density = square * (1.5 * 2.0 / (interval_s + interval_s_));
     const Vector6d shared = mean_by_kind(density);
     // Information that is nearly singular may come out with a negative variance.
-    if (shared.allFinite() && variance.minCoeff() >= 0.0) {
-      Vector6d newest = shared;
-      newest.head<3>() *= motion::kFasterRotation;
-      newest.tail<3>() *= motion::kFasterTranslation;
-      density_ += motion::kNoiseSmoothing * (newest - density_);
-      density_ = density_.cwiseMax(nominal_);
-    }
+    if (shared.allFinite() && variance.minCoeff() >= 0.0) learn(shared);
   }
   observed_ = 2;
   velocity_ = velocity;
   interval_s_ = interval_s;
+}
+
+void ProcessNoise::learn(const Vector6d& density) {
+  if (changes_at_start_ < motion::kStartChanges) {
+    at_start_ += (density - at_start_) / ++changes_at_start_;
+  }
+  Vector6d newest = density;
+  newest.head<3>() *= motion::kFasterRotation;
+  newest.tail<3>() *= motion::kFasterTranslation;
+  density_ += motion::kNoiseSmoothing * (newest - density_);
+  density_ = density_.cwiseMax(nominal_);
 }
 
 }  // namespace lilo::core

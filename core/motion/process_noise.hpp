@@ -30,12 +30,26 @@ class ProcessNoise {
   void observe(const Pose& T_middle, std::int64_t stamp_ns, const Vector6d& variance);
   /// The next pose does not continue the motion observed so far.
   void interrupt() { observed_ = 0; }
+  /// A map is begun. What is observed next tells of its first scan.
+  void begin_map() {
+    interrupt();
+    at_start_.setZero();
+    changes_at_start_ = 0;
+  }
 
   [[nodiscard]] const Vector6d& density() const { return density_; }
+  /// The mean of what was observed of the first motion::kStartChanges changes of the motion since
+  /// the map was begun: with no least value, and without the factor for what is faster than the
+  /// scans. Zero before the first.
+  [[nodiscard]] const Vector6d& density_at_start() const { return at_start_; }
 
  private:
+  void learn(const Vector6d& density);
+
   Vector6d nominal_, density_;
-  int observed_ = 0;  // poses on end, up to two
+  Vector6d at_start_ = Vector6d::Zero();
+  int changes_at_start_ = 0;  // of which at_start_ is the mean
+  int observed_ = 0;          // poses on end, up to two
   Pose T_middle_;
   std::int64_t stamp_ns_ = 0;
   Vector6d velocity_ = Vector6d::Zero();  // over the last interval: rotation, translation

@@ -10,17 +10,28 @@
 
 namespace lilo::core {
 
+namespace {
+
+/// What a small motion about a place is about another one, farther by `by_m`.
+Matrix6d moved_by(const Eigen::Vector3d& by_m) {
+  Matrix6d F = Matrix6d::Identity();
+  F.bottomLeftCorner<3, 3>() = -skew(by_m);  // rotation x by
+  return F;
+}
+
+}  // namespace
+
 void Drift::begin(const Matrix6d& at_start) {
   pose_ = at_start_ = at_start;
   cross_.setZero();
   of_beams_.setZero();
+  of_first_scan_.setZero();
   travelled_m_.setZero();
   coasted_s_ = 0.0;
 }
 
 void Drift::move(const Eigen::Vector3d& by_m) {
-  Matrix6d F = Matrix6d::Identity();
-  F.bottomLeftCorner<3, 3>() = -skew(by_m);  // rotation x by
+  const Matrix6d F = moved_by(by_m);
   pose_ = F * pose_ * F.transpose();
   of_beams_ = F * of_beams_ * F.transpose();
   cross_ = F * cross_;
@@ -56,7 +67,8 @@ void Drift::coast(const Eigen::Matrix3d& axes, double acceleration_density, doub
 void Drift::see(double span_s) { coasted_s_ = std::max(0.0, coasted_s_ - span_s); }
 
 Matrix6d Drift::covariance() const {
-  Matrix6d sum = pose_ + of_beams_;
+  const Matrix6d F = moved_by(travelled_m_);
+  Matrix6d sum = pose_ + of_beams_ + F * of_first_scan_ * F.transpose();
   sum.bottomRightCorner<3, 3>() +=
       tracking::kPathScale * tracking::kPathScale * travelled_m_ * travelled_m_.transpose();
   return sum;

@@ -6,7 +6,8 @@
 namespace lilo::core {
 
 /// The drift of the local map since it was begun: the covariance of the pose that an alignment
-/// without any error of its own would give. It grows in five ways:
+/// without any error of its own would give. It begins with the error of the first scan's deskewing,
+/// and grows in five ways:
 ///
 /// - Every keyframe enters the map with the error of its own alignment and hands it on to the scans
 ///   that are aligned with it.
@@ -41,6 +42,9 @@ class Drift {
   void coast(const Eigen::Matrix3d& axes, double acceleration_density, double span_s);
   /// For `span_s` a scan told of all translations.
   void see(double span_s);
+  /// The first scan of the map, whose end is the origin, entered it with an error of this
+  /// covariance. Until the next call.
+  void set_first_scan(const Matrix6d& covariance) { of_first_scan_ = covariance; }
   /// The beams' part at the last pose (BeamCalibration::pose_covariance), until the next call.
   void set_beam_covariance(const Matrix6d& covariance) { of_beams_ = covariance; }
 
@@ -50,6 +54,7 @@ class Drift {
   Matrix6d pose_ = Matrix6d::Zero();   // covariance, without the scale of the path and the beams
   Matrix6d cross_ = Matrix6d::Zero();  // covariance of the pose with the correlated error
   Matrix6d of_beams_ = Matrix6d::Zero();
+  Matrix6d of_first_scan_ = Matrix6d::Zero();
   Eigen::Vector3d travelled_m_ = Eigen::Vector3d::Zero();  // since the map was begun
   Matrix6d at_start_ = Matrix6d::Zero();
   double coasted_s_ = 0.0;  // time of dead reckoning, less the time seen since

@@ -58,6 +58,7 @@ void LocalOdometry::observe_noise(const ScanTiming& scan, const Solution& soluti
   process_noise_.observe(solution.trajectory.at(0.5),
                          scan.start_ns + (scan.end_ns - scan.start_ns) / 2,
                          solution.data_information.inverse().diagonal());
+  uncertainty_.learn_start(process_noise_.density_at_start(), scan.span_s());
 }
 
 void LocalOdometry::grow_map(const Observation& scan, const std::vector<Feature>& features,
@@ -72,7 +73,7 @@ Pose LocalOdometry::begin_map(const ScanTiming& first) {
   accept_prediction(first, predict(first));
   Pose at = state_.T_odom_sensor;
   uncertainty_.begin_map(state_);
-  process_noise_.interrupt();
+  process_noise_.begin_map();
   stationary_.reset();
   state_ = {};
   map_.clear();
@@ -81,7 +82,7 @@ Pose LocalOdometry::begin_map(const ScanTiming& first) {
 
 void LocalOdometry::rewind(const ScanTiming& first) {
   uncertainty_.rewind();
-  process_noise_.interrupt();
+  process_noise_.begin_map();
   stationary_.reset();
   state_ = {};
   state_.end_ns = first.end_ns;

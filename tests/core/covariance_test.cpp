@@ -116,6 +116,22 @@ TEST(Drift, TheBeamsPartIsReplacedAndMovesOn) {
   EXPECT_NEAR(drift.covariance()(5, 5), 1.0, 1e-9);
 }
 
+// An error of the first scan's attitude turns the whole way, and is not counted twice.
+TEST(Drift, TheFirstScansPartTurnsTheWay) {
+  core::Drift drift;
+  drift.begin(Matrix6d::Zero());
+  Matrix6d heading = Matrix6d::Zero();
+  heading(2, 2) = 1e-4;  // 0.01 rad about z
+  drift.move({60.0, 0.0, 0.0});
+  drift.set_first_scan(heading);
+  drift.set_first_scan(heading);
+  drift.move({40.0, 0.0, 0.0});
+  EXPECT_NEAR(drift.covariance()(2, 2), 1e-4, 1e-12);
+  EXPECT_NEAR(drift.covariance()(4, 4), 1.0, 1e-9);  // 1 m to the left or right
+  drift.begin(Matrix6d::Zero());
+  EXPECT_EQ(drift.covariance(), Matrix6d::Zero());
+}
+
 // Of what the scale is wrong by, nothing is left where the way ends at its beginning.
 TEST(Drift, AnErrorOfScaleGrowsWithTheDistanceFromTheStartAndComesBack) {
   core::Drift drift;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 namespace lilo::core {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 // variance by independent residuals counts 0.3 times for each unit of the design effect.
 constexpr double kDataWeight = 0.1, kUnit = 3.0 * kDataWeight;
 constexpr double kLeastDesignEffect = 0.05;
+constexpr double kScan_s = 0.1;
 constexpr int kOldMap = 100;  // keyframes: each is a thirteenth of what is seen
 
 const Eigen::Quaterniond kLeft(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
@@ -42,6 +44,38 @@ WeakDirections weak_along(const Vector6d& direction) {
   weak.count = 1;
   weak.all[0].direction = direction;
   return weak;
+}
+
+/// Two scans of a sensor whose acceleration is white noise of density one: how far the points of
+/// the first one are off on average, if it is deskewed at the mean velocity of the second one.
+double error_of_first_scan(std::mt19937& rng) {
+  constexpr int kSteps = 200;  // a scan
+  constexpr double kStep_s = kScan_s / kSteps;
+  std::normal_distribution<double> change_mps(0.0, std::sqrt(kStep_s));
+  double velocity_mps = 0.0, way_m = 0.0, way_to_points_m = 0.0, first_end_m = 0.0;
+  for (int step = 0; step < 2 * kSteps; ++step) {
+    if (step == kSteps) first_end_m = way_m;
+    if (step < kSteps) way_to_points_m += way_m / kSteps;
+    velocity_mps += change_mps(rng);
+    way_m += kStep_s * velocity_mps;
+  }
+  const double assumed_mps = (way_m - first_end_m) / kScan_s;
+  return first_end_m - way_to_points_m - 0.5 * kScan_s * assumed_mps;
+}
+
+TEST(PoseUncertainty, TheFirstScanIsAsUncertainAsTheMotionInIt) {
+  constexpr int kRuns = 20000;
+  std::mt19937 rng(1);
+  double variance = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    const double error = error_of_first_scan(rng);
+    variance += error * error / kRuns;
+  }
+  const Vector6d density = six(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
+  PoseUncertainty uncertainty(kDataWeight);
+  uncertainty.learn_start(density, kScan_s);
+  const Matrix6d covariance = uncertainty.covariance(exact_state());
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(covariance(k, k) / (density[k] * variance), 1.0, 0.05);
 }
 
 TEST(PoseUncertainty, AnAlignmentCountsByItsDesignEffect) {
@@ -118,13 +152,13 @@ TEST(PoseUncertainty, AnotherMapBeginsAsUncertainAsThePoseWas) {
 
 // A position under white noise q on acceleration is uncertain by q t^3 / 3.
 TEST(PoseUncertainty, AnUnseenDirectionIsDeadReckoned) {
-  constexpr double kScan_s = 0.01;
+  constexpr double kShortScan_s = 0.01;
   const Vector6d density = six(0.3, 0.3, 0.3, 2.0, 4.0, 100.0);  // 3 on the ground plane
   MotionState state = exact_state();
   state.T_odom_sensor.rotation = kLeft;
   PoseUncertainty uncertainty(kDataWeight);
   for (int scan = 0; scan < 1000; ++scan)
-    uncertainty.learn(weak_along(six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0)), state, density, kScan_s);
+    uncertainty.learn(weak_along(six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0)), state, density, kShortScan_s);
   const Matrix6d of_sensor = uncertainty.covariance(state);
   EXPECT_NEAR(of_sensor(3, 3) / (3.0 * 1000.0 / 3.0), 1.0, 0.01);
   EXPECT_NEAR(of_sensor(4, 4), 0.0, 1e-9);
@@ -164,7 +198,6 @@ TEST(PoseUncertainty, OnlyADirectionOfWhichTheScanTellsNextToNothingIsDeadReckon
 // Dead reckoning goes on after it: the velocity is no better known. A scan that tells of all
 // translations ends it.
 TEST(PoseUncertainty, AScanThatGivesAThirdRestoresNoVelocity) {
-  constexpr double kScan_s = 0.1;
   const auto grown_after = [&](const WeakDirections& between) {
     PoseUncertainty uncertainty(kDataWeight);
     const WeakDirections unseen = weak_along(six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0));

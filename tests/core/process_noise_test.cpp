@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -60,6 +61,24 @@ TEST(ProcessNoise, GrowsWithTheMotionOfItsOwnAxesOnly) {
   EXPECT_NEAR(sum / white, 16.0, 1.0);
   EXPECT_EQ(noise.density()[0], noise.density()[1]);
   EXPECT_EQ(noise.density().tail<4>(), nominal().tail<4>());
+}
+
+// Velocities of 0 and 0.2 m/s by turns change by 0.2 m/s from interval to interval: q is 3/2 of the
+// square over T, and half of that for two axes that share their noise. Then the sensor stands.
+TEST(ProcessNoise, RemembersHowTheMotionChangedAfterTheStart) {
+  ProcessNoise noise(nominal());
+  EXPECT_EQ(noise.density_at_start(), Vector6d::Zero());
+  for (int map = 0; map < 2; ++map) {
+    for (std::int64_t scan = 0; scan < 100; ++scan) {
+      const std::int64_t steps = std::min<std::int64_t>(scan, 20) / 2;
+      const double x_m = 0.02 * static_cast<double>(steps);
+      noise.observe({Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}}, scan * kScan_ns, kExact);
+    }
+    EXPECT_NEAR(noise.density_at_start()[3], 0.5 * 1.5 * 0.2 * 0.2 / 0.1, 1e-9) << map;
+    EXPECT_EQ(noise.density_at_start()[5], 0.0);
+    noise.begin_map();
+    EXPECT_EQ(noise.density_at_start(), Vector6d::Zero());
+  }
 }
 
 TEST(ProcessNoise, CalmsDownWithTheMotion) {
