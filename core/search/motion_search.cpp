@@ -92,7 +92,8 @@ int MotionSearch::score_of(std::span<const Track> tracks) {
   grid_.clear();
   for (std::size_t k = 0; k < count_; ++k) {
     const auto& [T_begin, T_end] = tracks[k];
-    scans_[k].points.assign(scans_[k].structure, T_begin.rotation, T_end.rotation);
+    scans_[k].points.assign_turning(scans_[k].structure, T_begin.rotation, T_end.rotation,
+                                    Subsample::all);
     grid_.add(scans_[k].points, T_begin.translation_m.head<2>(), T_end.translation_m.head<2>());
   }
   return score_of_grid(Subsample::all);

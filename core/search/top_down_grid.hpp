@@ -36,11 +36,13 @@ struct TopDownPoints {
   std::vector<float> s;  ///< as Feature::s
 
   void reserve(std::size_t size);
-  /// Of a scan in which the sensor turned from `begin` to `end`. Points outside the subsample are
+  /// Of a scan in which the sensor turned from `begin` to `end`. All points are turned by the
+  /// attitude in the middle, which is enough at a constant rate. Points outside the subsample are
   /// left as they were.
   void assign(const StructurePoints& scan, const Eigen::Quaterniond& begin,
               const Eigen::Quaterniond& end, Subsample subsample = Subsample::all);
-  /// The same for a sensor that may turn fast: each point by the rotation at its firing.
+  /// The same, each point by the nearest of search::kTurnInstants attitudes: for a rate that
+  /// changes from scan to scan.
   void assign_turning(const StructurePoints& scan, const Eigen::Quaterniond& begin,
                       const Eigen::Quaterniond& end, Subsample subsample);
 };

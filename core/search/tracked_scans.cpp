@@ -14,8 +14,8 @@ void TrackedScans::add(const StructurePoints& structure, const Pose& T_begin, co
   newest_ = (newest_ + 1) % scans_.size();
   count_ = std::min(count_ + 1, scans_.size());
   TrackedScan& scan = scans_[newest_];
-  // Where someone carries the sensor, the yaw rate changes from scan to scan. With one attitude for
-  // all points of a scan two motions seemed to fit.
+  // Where someone carries the sensor, the yaw rate changes from scan to scan. One attitude for all
+  // points would smear fixed things differently in every scan, and two motions would seem to fit.
   scan.points.assign_turning(structure, T_begin.rotation, T_end.rotation, Subsample::all);
   scan.begin_m = T_begin.translation_m.head<2>();
   scan.end_m = T_end.translation_m.head<2>();

@@ -77,18 +77,18 @@ TEST(TrackedScans, ASensorThatSwingsSeesTheSameCells) {
   };
   for (int k = 0; k < kScans; ++k) {
     const double begin_s = kScan_s * k, end_s = begin_s + kScan_s;
-    const std::array<Pose, 2> by_s{turned(k % 2 == 0 ? 0.0 : kSwing_rad),
-                                   turned(k % 2 == 0 ? kSwing_rad : 0.0)};
+    const std::array<Pose, 2> T_at_s{turned(k % 2 == 0 ? 0.0 : kSwing_rad),
+                                     turned(k % 2 == 0 ? kSwing_rad : 0.0)};
     std::vector<Feature> features = posts_seen(0.0, begin_s);
     for (Feature& post : features) {
-      const Pose& T = by_s[static_cast<std::size_t>(post.s)];
+      const Pose& T = T_at_s[static_cast<std::size_t>(post.s)];
       const Eigen::Vector3d seen_m =
           T.inverse() * Eigen::Vector3f(post.x_m, post.y_m, post.z_m).cast<double>();
       post.x_m = static_cast<float>(seen_m.x());
       post.y_m = static_cast<float>(seen_m.y());
     }
     structure.assign(features);
-    scans.add(structure, by_s[0], by_s[1],
+    scans.add(structure, T_at_s[0], T_at_s[1],
               {std::llround(1e9 * begin_s), std::llround(1e9 * end_s)});
   }
   EXPECT_EQ(scans.occupied_under({0.0, 0.0}, Subsample::all, grid, kNoLimit), kPosts);
