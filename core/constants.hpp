@@ -232,7 +232,7 @@ inline constexpr int kCellsPerMetre = 2;
 inline constexpr std::int32_t kGridCells = 512;
 /// One of so many points is tried before all of them are.
 inline constexpr std::size_t kSubsample = 4;
-/// Attitudes of a scan in which the sensor may turn fast.
+/// Attitudes of a scan whose rate of turn may not be that of the others.
 inline constexpr std::size_t kTurnInstants = 16;
 
 /// What a vehicle may change of its motion in a bend, and unseen.

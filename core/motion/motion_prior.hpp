@@ -10,9 +10,10 @@
 /// last scan, with white noise on acceleration (Barfoot, State Estimation for Robotics, ch. 11).
 ///
 /// Process noise enters the alignment here and nowhere else; PoseUncertainty takes it for dead
-/// reckoning. ProcessNoise estimates its density from the motion found; predict() puts that into a
-/// Prior; the solver takes add_prior(), which inflates it where the motion departs from the prior,
-/// and motion_information().
+/// reckoning, and what was observed of it at the start for the first scan. ProcessNoise estimates
+/// its density from the motion found; predict() puts that into a Prior; the solver takes
+/// add_prior(), which inflates it where the motion departs from the prior, and
+/// motion_information().
 namespace lilo::core {
 
 /// J'OJ over all knots.

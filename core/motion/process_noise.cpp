@@ -34,7 +34,8 @@ void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns, const Ve
 
 void ProcessNoise::learn(const Vector6d& density) {
   if (changes_at_start_ < motion::kStartChanges) {
-    at_start_ += (density - at_start_) / ++changes_at_start_;
+    ++changes_at_start_;
+    at_start_ += (density - at_start_) / changes_at_start_;
   }
   Vector6d newest = density;
   newest.head<3>() *= motion::kFasterRotation;

@@ -12,7 +12,7 @@ namespace lilo::core {
 
 namespace {
 
-/// What a small motion about a place is about another one, farther by `by_m`.
+/// Takes a small motion about one place to the same motion about a place farther by `by_m`.
 Matrix6d moved_by(const Eigen::Vector3d& by_m) {
   Matrix6d F = Matrix6d::Identity();
   F.bottomLeftCorner<3, 3>() = -skew(by_m);  // rotation x by

@@ -42,8 +42,8 @@ class Drift {
   void coast(const Eigen::Matrix3d& axes, double acceleration_density, double span_s);
   /// For `span_s` a scan told of all translations.
   void see(double span_s);
-  /// The first scan of the map, whose end is the origin, entered it with an error of this
-  /// covariance. Until the next call.
+  /// The covariance of the error with which the first scan entered the map, about the origin, where
+  /// that scan ended. It replaces the last one; begin() and rewind() set it to zero.
   void set_first_scan(const Matrix6d& covariance) { of_first_scan_ = covariance; }
   /// The beams' part at the last pose (BeamCalibration::pose_covariance), until the next call.
   void set_beam_covariance(const Matrix6d& covariance) { of_beams_ = covariance; }
@@ -51,7 +51,7 @@ class Drift {
   [[nodiscard]] Matrix6d covariance() const;
 
  private:
-  Matrix6d pose_ = Matrix6d::Zero();   // covariance, without the scale of the path and the beams
+  Matrix6d pose_ = Matrix6d::Zero();   // without the path's scale, the beams and the first scan
   Matrix6d cross_ = Matrix6d::Zero();  // covariance of the pose with the correlated error
   Matrix6d of_beams_ = Matrix6d::Zero();
   Matrix6d of_first_scan_ = Matrix6d::Zero();

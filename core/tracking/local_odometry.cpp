@@ -58,7 +58,7 @@ void LocalOdometry::observe_noise(const ScanTiming& scan, const Solution& soluti
   process_noise_.observe(solution.trajectory.at(0.5),
                          scan.start_ns + (scan.end_ns - scan.start_ns) / 2,
                          solution.data_information.inverse().diagonal());
-  uncertainty_.learn_start(process_noise_.density_at_start(), scan.span_s());
+  uncertainty_.learn_start(process_noise_.density_at_start(), first_span_s_);
 }
 
 void LocalOdometry::grow_map(const Observation& scan, const std::vector<Feature>& features,
@@ -72,6 +72,7 @@ void LocalOdometry::grow_map(const Observation& scan, const std::vector<Feature>
 Pose LocalOdometry::begin_map(const ScanTiming& first) {
   accept_prediction(first, predict(first));
   Pose at = state_.T_odom_sensor;
+  first_span_s_ = first.span_s();
   uncertainty_.begin_map(state_);
   process_noise_.begin_map();
   stationary_.reset();
@@ -81,6 +82,7 @@ Pose LocalOdometry::begin_map(const ScanTiming& first) {
 }
 
 void LocalOdometry::rewind(const ScanTiming& first) {
+  first_span_s_ = first.span_s();
   uncertainty_.rewind();
   process_noise_.begin_map();
   stationary_.reset();

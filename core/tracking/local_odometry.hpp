@@ -59,7 +59,8 @@ class LocalOdometry {
   /// nothing the motion is dead reckoned (is_dead_reckoned()), and the covariance of the pose
   /// grows.
   WeakDirections find_weak_directions(const ScanTiming& scan, const Solution& solution);
-  /// Learns how fast the motion changes, from a scan that was aligned (ProcessNoise).
+  /// Learns how fast the motion changes, from a scan that was aligned (ProcessNoise), and so how
+  /// uncertain the first scan of the map is.
   void observe_noise(const ScanTiming& scan, const Solution& solution);
   /// The next scan does not continue the motion observed so far.
   void interrupt_noise() { process_noise_.interrupt(); }
@@ -101,6 +102,7 @@ class LocalOdometry {
   PoseUncertainty uncertainty_;
   StationaryDetector stationary_;
   MotionState state_;
+  double first_span_s_ = 0.0;  // of the map's first scan
   int least_segments_;
 };
 

@@ -35,12 +35,13 @@ void PoseUncertainty::learn(const Vector6d& design_effect, const Matrix6d& data_
                     (design_effect.cwiseMax(tracking::kLeastDesignEffect) - design_effect_);
 }
 
-/// The first scan is deskewed at a constant velocity: that from its end to the end of the second
-/// one. Under white noise of density q on acceleration, and over scans of T each, its points are
-/// then off by a mean error of variance q T^3 (1/20 + 1/12): by how the velocity changes during the
-/// first scan and during the second one.
+/// The first scan is deskewed at the mean velocity from its end to the end of the second one. Under
+/// white noise of density q on acceleration, and over scans of T each, its points would be off by a
+/// mean error of variance q T^3 (1/20 + 1/12): by how the velocity changes during the first scan
+/// and during the second one. But the second scan is aligned with these points, so that the
+/// velocity found has the error in it as well, and two thirds of the error are left: 4/9 of 2/15.
 void PoseUncertainty::learn_start(const Vector6d& density, double span_s) {
-  drift_.set_first_scan((2.0 / 15.0) * span_s * span_s * span_s * density.asDiagonal());
+  drift_.set_first_scan((8.0 / 135.0) * span_s * span_s * span_s * density.asDiagonal());
 }
 
 void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {

@@ -25,8 +25,8 @@ class PoseUncertainty {
   void begin_map(const MotionState& state);
   /// The same map is begun once more.
   void rewind() { drift_.rewind(); }
-  /// How uncertain the first scan of the map is. `density`: of the white noise on acceleration
-  /// (ProcessNoise::density_at_start); `span_s`: how long a scan lasts.
+  /// How uncertain the first scan of the map is, which lasted `span_s`: 8/135 q T^3, replacing the
+  /// last call. `density`: q (rad^2/s^3, then m^2/s^3; ProcessNoise::density_at_start).
   void learn_start(const Vector6d& density, double span_s);
   /// A scan was aligned (Solution::design_effect, Solution::data_information).
   void learn(const Vector6d& design_effect, const Matrix6d& data_information);

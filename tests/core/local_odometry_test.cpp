@@ -190,5 +190,34 @@ TEST_F(LocalOdometryTest, ASensorIsFollowedWhenItSetsOff) {
   }
 }
 
+/// Middles of scans 2 cm apart by turns: the velocity changes by 0.4 m/s every time.
+void shake(LocalOdometry& local, std::int64_t first, std::int64_t scans) {
+  for (std::int64_t k = first; k < first + scans; ++k) {
+    const Pose T{kAhead, {k % 2 == 0 ? 0.0 : 0.02, 0.0, 0.0}};
+    local.observe_noise(timing_of(k), aligned(T, {}, 1e12));
+  }
+}
+
+// q is 3/2 of the square over T, half of that for each of x and y; the first scan has 8/135 q T^3.
+TEST_F(LocalOdometryTest, TheFirstScanIsAsUncertainAsTheMotionAfterIt) {
+  constexpr double kDensity = 0.5 * 1.5 * 0.4 * 0.4 / kSpan_s;
+  constexpr double kVariance_m2 = 8.0 / 135.0 * kDensity * kSpan_s * kSpan_s * kSpan_s;
+  begin_in_yard(0.0);
+  const Matrix6d before = local_.covariance();
+  shake(local_, 1, 10);
+  const Matrix6d more = local_.covariance() - before;
+  EXPECT_NEAR(more(3, 3) / kVariance_m2, 1.0, 1e-3);
+  EXPECT_NEAR(more(4, 4) / kVariance_m2, 1.0, 1e-3);
+  EXPECT_NEAR(more(5, 5) / kVariance_m2, 0.0, 1e-3);
+  local_.rewind(timing_of(0));
+  shake(local_, 12, 2);
+  EXPECT_TRUE(local_.covariance().isApprox(before));
+  shake(local_, 14, 1);  // the third pose in a row tells a change
+  EXPECT_GT(local_.covariance()(3, 3), before(3, 3) + 0.9 * kVariance_m2);
+  const double of_old_map = local_.covariance()(3, 3);
+  local_.begin_map(timing_of(15));
+  EXPECT_GE(local_.covariance()(3, 3), of_old_map);
+}
+
 }  // namespace
 }  // namespace lilo::core

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -63,18 +62,22 @@ TEST(ProcessNoise, GrowsWithTheMotionOfItsOwnAxesOnly) {
   EXPECT_EQ(noise.density().tail<4>(), nominal().tail<4>());
 }
 
-// Velocities of 0 and 0.2 m/s by turns change by 0.2 m/s from interval to interval: q is 3/2 of the
-// square over T, and half of that for two axes that share their noise. Then the sensor stands.
-TEST(ProcessNoise, RemembersHowTheMotionChangedAfterTheStart) {
+// The velocity changes by 0.1, 0.2, 0.3, 0.4 and 0.5 m/s from scan to scan, and by more later on: q
+// is 3/2 of the mean square of five over T, and half of that for two axes that share their noise.
+// The second map begins elsewhere, which is no motion.
+TEST(ProcessNoise, RemembersTheFirstFiveChangesOfTheMotion) {
+  constexpr double kT_s = 0.1, kMeanSquare = (0.01 + 0.04 + 0.09 + 0.16 + 0.25) / 5.0;
   ProcessNoise noise(nominal());
   EXPECT_EQ(noise.density_at_start(), Vector6d::Zero());
+  std::int64_t scan = 0;
   for (int map = 0; map < 2; ++map) {
-    for (std::int64_t scan = 0; scan < 100; ++scan) {
-      const std::int64_t steps = std::min<std::int64_t>(scan, 20) / 2;
-      const double x_m = 0.02 * static_cast<double>(steps);
+    double x_m = 100.0 * map, velocity_mps = 0.0;
+    for (int change = 0; change <= 20; ++change, ++scan) {
       noise.observe({Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}}, scan * kScan_ns, kExact);
+      velocity_mps += 0.1 * change;
+      x_m += kT_s * velocity_mps;
     }
-    EXPECT_NEAR(noise.density_at_start()[3], 0.5 * 1.5 * 0.2 * 0.2 / 0.1, 1e-9) << map;
+    EXPECT_NEAR(noise.density_at_start()[3], 0.5 * 1.5 * kMeanSquare / kT_s, 1e-6) << map;
     EXPECT_EQ(noise.density_at_start()[5], 0.0);
     noise.begin_map();
     EXPECT_EQ(noise.density_at_start(), Vector6d::Zero());
