@@ -77,7 +77,7 @@ void TopDownPoints::assign(const StructurePoints& scan, const Eigen::Quaterniond
                            const Eigen::Quaterniond& end, Subsample subsample) {
   for (std::vector<float>* part : {&x, &y}) part->resize(scan.s.size());
   s = scan.s;
-  // Where the sensor turns at a constant rate, the error of it is the same in every scan.
+  // One attitude for all points: at a constant rate of turn its error is the same in every scan.
   const Eigen::Matrix<float, 2, 3> R =
       (kPerMetre * begin.slerp(0.5, end).toRotationMatrix().topRows<2>()).cast<float>();
   const float xx = R(0, 0), xy = R(0, 1), xz = R(0, 2);

@@ -40,7 +40,7 @@ struct TopDownPoints {
   /// attitude in the middle, which is enough at a constant rate. Points outside the subsample are
   /// left as they were.
   void assign(const StructurePoints& scan, const Eigen::Quaterniond& begin,
-              const Eigen::Quaterniond& end, Subsample subsample = Subsample::all);
+              const Eigen::Quaterniond& end, Subsample subsample);
   /// The same, each point by the nearest of search::kTurnInstants attitudes: for a rate that
   /// changes from scan to scan.
   void assign_turning(const StructurePoints& scan, const Eigen::Quaterniond& begin,

@@ -98,7 +98,7 @@ void top_down_grid(benchmark::State& state) {
   core::TopDownGrid laid(chosen.most());
   const Eigen::Quaterniond ahead = Eigen::Quaterniond::Identity();
   for (auto _ : state) {
-    plan.assign(outline, ahead, ahead);
+    plan.assign(outline, ahead, ahead, core::Subsample::all);
     for (int speed = 0; speed < 25; ++speed) {
       laid.clear();
       laid.add(plan, {0.0, 0.0}, {0.1 * speed, 0.0});

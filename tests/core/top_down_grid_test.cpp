@@ -130,7 +130,7 @@ TopDownPoints seen_from_above(const std::vector<Feature>& features) {
   points.assign(features);
   TopDownPoints from_above;
   const Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
-  from_above.assign(points, level, level);
+  from_above.assign(points, level, level, Subsample::all);
   return from_above;
 }
 
