@@ -9,7 +9,6 @@
 #include <cmath>
 
 namespace lilo::core {
-
 namespace {
 
 /// Takes a small motion about one place to the same motion about a place farther by `by_m`.

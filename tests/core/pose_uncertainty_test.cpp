@@ -85,6 +85,20 @@ TEST(PoseUncertainty, TheFirstScanIsAsUncertainAsTheMotionInIt) {
   }
 }
 
+// Another map has a first scan of its own, and begins as uncertain as the old one was.
+TEST(PoseUncertainty, TheFirstScanOfAnOlderMapCountsAsWell) {
+  PoseUncertainty uncertainty(kDataWeight);
+  uncertainty.learn_start(Vector6d::Ones(), kScan_s);
+  const double of_one_m2 = uncertainty.covariance(exact_state())(3, 3);
+  EXPECT_GT(of_one_m2, 1e-5);
+  uncertainty.begin_map(exact_state());
+  EXPECT_NEAR(uncertainty.covariance(exact_state())(3, 3) / of_one_m2, 1.0, 1e-9);
+  uncertainty.learn_start(Vector6d::Ones(), kScan_s);
+  EXPECT_NEAR(uncertainty.covariance(exact_state())(3, 3) / of_one_m2, 2.0, 1e-9);
+  uncertainty.rewind();
+  EXPECT_NEAR(uncertainty.covariance(exact_state())(3, 3) / of_one_m2, 1.0, 1e-9);
+}
+
 TEST(PoseUncertainty, AnAlignmentCountsByItsDesignEffect) {
   const Vector6d variance = six(1e-6, 2e-6, 3e-6, 4e-4, 5e-4, 6e-4);
   const Vector6d effect = six(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
