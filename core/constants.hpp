@@ -326,6 +326,8 @@ inline constexpr double kInPlace_m = 0.2;
 
 /// Weight of the newest scan in the design effect.
 inline constexpr double kDesignEffectSmoothing = 0.1;
+/// Design effect of a scan over the mean, from which it counts by its own. Range: 1 to 2, by NEES.
+inline constexpr double kUnusualDesignEffect = 2.0;
 /// Least design effect: a simulation without noise is no reason to be sure.
 inline constexpr double kLeastDesignEffect = 0.05;
 /// Scans that share the error of a cell.

@@ -31,8 +31,13 @@ void PoseUncertainty::begin_map(const MotionState& state) {
 
 void PoseUncertainty::learn(const Vector6d& design_effect, const Matrix6d& data_information) {
   data_information_ = data_weight_ * data_information;
-  design_effect_ += tracking::kDesignEffectSmoothing *
-                    (design_effect.cwiseMax(tracking::kLeastDesignEffect) - design_effect_);
+  mean_effect_ += tracking::kDesignEffectSmoothing *
+                  (design_effect.cwiseMax(tracking::kLeastDesignEffect) - mean_effect_);
+  // The mean begins at the least design effect: it is compared without the part that still has.
+  mean_weight_ += tracking::kDesignEffectSmoothing * (1.0 - mean_weight_);
+  const Eigen::Array<bool, 6, 1> is_unusual =
+      mean_weight_ * design_effect.array() > tracking::kUnusualDesignEffect * mean_effect_.array();
+  design_effect_ = is_unusual.select(design_effect, mean_effect_);
 }
 
 /// The first scan is deskewed at the mean velocity from its end to the end of the second one. Under

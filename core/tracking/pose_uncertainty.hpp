@@ -28,7 +28,10 @@ class PoseUncertainty {
   /// How uncertain the first scan of the map is, which lasted `span_s`: 8/135 q T^3, replacing the
   /// last call. `density`: q (rad^2/s^3, then m^2/s^3; ProcessNoise::density_at_start).
   void learn_start(const Vector6d& density, double span_s);
-  /// A scan was aligned (Solution::design_effect, Solution::data_information).
+  /// A scan was aligned (Solution::design_effect, Solution::data_information). The design effect of
+  /// one scan varies by chance, so that the mean of the last second counts, unless that of the scan
+  /// is far larger: where a turn begins within a scan, the trajectory does not fit it, and its
+  /// residuals vary more with the azimuth.
   void learn(const Vector6d& design_effect, const Matrix6d& data_information);
   /// The weak directions (sensor's axes) of a scan that lasted `span_s`; `density`: process noise.
   /// Along those of which the scan tells next to nothing the motion is dead reckoned
@@ -49,8 +52,9 @@ class PoseUncertainty {
   [[nodiscard]] Matrix6d of_alignment(const MotionState& state) const;
 
   double data_weight_;
-  Vector6d design_effect_ =
-      Vector6d::Constant(tracking::kLeastDesignEffect);  // mean of the last second
+  Vector6d mean_effect_ = Vector6d::Constant(tracking::kLeastDesignEffect);  // of the last second
+  double mean_weight_ = 0.0;  // of the scans in this mean
+  Vector6d design_effect_ = mean_effect_;
   /// Of the last scan, as the solver weights it. Before there is one, all is taken for the scan's.
   Matrix6d data_information_ = 1e12 * Matrix6d::Identity();
   Drift drift_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 namespace lilo::core {
 namespace {
@@ -112,6 +113,26 @@ TEST(PoseUncertainty, AnAlignmentCountsByItsDesignEffect) {
     for (int k = 0; k < 6; ++k)
       EXPECT_NEAR(covariance(k, k) / (kUnit * mean[k] * variance[k]), 1.0, 1e-9) << k;
   }
+}
+
+/// The variance of x by an alignment of 1 m^2, after many scans of design effect one and these.
+double variance_after(const std::vector<double>& effects) {
+  PoseUncertainty uncertainty(kDataWeight);
+  for (int scan = 0; scan < 1000; ++scan) uncertainty.learn(Vector6d::Ones(), kAllFromScan);
+  for (const double effect : effects) {
+    uncertainty.learn(Vector6d::Constant(effect), kAllFromScan);
+  }
+  return uncertainty.covariance(state_of(Vector6d::Ones()))(3, 3) / kUnit;
+}
+
+TEST(PoseUncertainty, AnUnusualScanCountsByItsOwnDesignEffect) {
+  PoseUncertainty young(kDataWeight);
+  for (int scan = 0; scan < 4; ++scan) young.learn(Vector6d::Ones(), kAllFromScan);
+  young.learn(Vector6d::Constant(11.0), kAllFromScan);
+  EXPECT_NEAR(young.covariance(state_of(Vector6d::Ones()))(3, 3) / kUnit, 11.0, 1e-9);
+  EXPECT_NEAR(variance_after({1.8}), 1.08, 1e-9);
+  EXPECT_NEAR(variance_after({11.0}), 11.0, 1e-9);  // the usual one is 2 now
+  EXPECT_NEAR(variance_after({11.0, 3.0}), 2.1, 1e-9);
 }
 
 // The design effect is about residuals: what the prior tells counts as it is.
