@@ -22,6 +22,10 @@ bool fits_significantly_better(const Solution& a, const Solution& b) {
   return is_significant(a.structure_inliers, b.structure_inliers, search::kPreferSigmas);
 }
 
+double ground_inliers(const Solution& solution) {
+  return solution.inliers - solution.structure_inliers;
+}
+
 /// The prior of a scan that ended about there, with an unknown motion.
 Prior prior_at(const Pose& T_end, Prior prior) {
   prior.T_begin = moved(T_end, prior.twist, -prior.span_s);
@@ -78,8 +82,7 @@ std::optional<Solution> Relocalizer::find(const Observation& scan, const Prior& 
   if (!best.converged) {
     best = local.align(*scan.features, prior_at(best.trajectory.end(), prior), scan.levels);
   }
-  const bool is_found = best.converged &&
-                        best.inliers - best.structure_inliers > tracking::kMinGround &&
+  const bool is_found = best.converged && ground_inliers(best) > tracking::kMinGround &&
                         history.fit.relative(best, scan.structure) > registration::kDoubtfulFit;
   return is_found ? std::optional(best) : std::nullopt;
 }
@@ -133,8 +136,9 @@ Solution Relocalizer::follow_turn(const Solution& found, const Observation& scan
   return turned.value_or(found);
 }
 
-/// The best alignment from the most likely turns, if significantly more fits than in `found`. One
-/// that left the predicted place is not a turn, and is not taken.
+/// The best alignment from the most likely turns, if significantly more of the structure fits than
+/// in `found`, and not less of the ground. One that left the predicted place is not a turn, and is
+/// not taken. Of the little structure on bare hills more may fit by chance under some turn.
 std::optional<Solution> Relocalizer::better_turned(const Solution& found, const Observation& scan,
                                                    const Prior& prior,
                                                    const AlignmentHistory& history,
@@ -152,7 +156,9 @@ std::optional<Solution> Relocalizer::better_turned(const Solution& found, const 
     const double departed_m = (other.trajectory.end().translation_m - place_m).norm();
     if (departed_m < tracking::kFoundPlace_m && fits_less(best, other)) best = other;
   }
-  const bool is_better = fits_significantly_better(best, found) &&
+  const bool loses_ground =
+      is_significant(ground_inliers(found), ground_inliers(best), search::kPreferSigmas);
+  const bool is_better = fits_significantly_better(best, found) && !loses_ground &&
                          is_explained(best, history.fit.relative(best, scan.structure));
   return is_better ? std::optional(best) : std::nullopt;
 }

@@ -49,7 +49,7 @@ class Relocalizer {
 
   /// Follows an abrupt turn. If `found`, the alignment from the prediction, fits far worse than
   /// usual, turns within the scan are searched, then turns that began within the last one. One is
-  /// taken if significantly more of the structure fits; else `found`.
+  /// taken if significantly more of the structure fits, and not less of the ground; else `found`.
   Solution follow_turn(const Solution& found, const Observation& scan, const Prior& prior,
                        const AlignmentHistory& history, LocalOdometry& local);
 

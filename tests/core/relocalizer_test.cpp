@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace lilo::core {
 namespace {
 
@@ -13,10 +15,11 @@ constexpr std::size_t kMost = 20000;
 /// A sensor that stood in the yard, with a map of it.
 class RelocalizerTest : public testing::Test {
  protected:
-  void SetUp() override {
+  void SetUp() override { stand_in(test::yard()); }
+  void stand_in(const test::Scene& scene) {
     for (std::uint64_t k = 0; k < 6; ++k) {
       const test::ObservedScan scan(
-          test::yard(), [](double) { return Pose{}; }, k);
+          scene, [](double) { return Pose{}; }, k);
       const Prior prior = local_.predict(scan.timing());
       const Solution solution =
           k == 0 ? local_.unaligned(prior) : local_.align(scan.features(), prior);
@@ -24,7 +27,8 @@ class RelocalizerTest : public testing::Test {
         local_.accept_first(scan.timing());
       } else {
         local_.accept(scan.timing(), solution);
-        history_.fit.learn(solution, scan.observation().structure);
+        // Not while the motion is searched and the map is young: ever more fits it.
+        if (k >= 4) history_.fit.learn(solution, scan.observation().structure);
       }
       history_.end_ns = scan.timing().end_ns;
       local_.grow_map({.timing = scan.timing(), .levels = Levels::from_whole}, scan.features(),
@@ -114,6 +118,45 @@ TEST_F(RelocalizerTest, FollowsNoTurnThatEndsElsewhere) {
   const Solution followed =
       relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
   EXPECT_EQ(followed.trajectory.knots, found.trajectory.knots);
+}
+
+/// The yard on ground that rises towards +x by 10 degrees, its walls and poles turned.
+test::Scene yard_on_slope(double turned_rad) {
+  test::Scene scene = test::yard();
+  const double slope_rad = 0.17;
+  scene.planes[0] = {{-std::sin(slope_rad), 0.0, std::cos(slope_rad)}, -1.5};
+  const Eigen::Quaterniond turn(so3_exp({0.0, 0.0, turned_rad}));
+  for (std::size_t k = 1; k < scene.planes.size(); ++k) {
+    scene.planes[k].normal = turn * scene.planes[k].normal;
+  }
+  for (test::Pole& pole : scene.poles) {
+    const Eigen::Vector3d turned_m = turn * Eigen::Vector3d(pole.x_m, pole.y_m, 0.0);
+    pole.x_m = turned_m.x();
+    pole.y_m = turned_m.y();
+  }
+  return scene;
+}
+
+class OnASlope : public RelocalizerTest {
+ protected:
+  void SetUp() override { stand_in(yard_on_slope(0.0)); }
+  /// How far a scan is turned that is taken at rest. 0: the prediction is kept.
+  double turned_rad(const test::Scene& scene, double sensor_rad) {
+    const test::ObservedScan scan(
+        scene, [&](double s) { return at(0.0, 0.0, sensor_rad * s); }, 6);
+    const Prior prior = local_.predict(scan.timing());
+    const Solution found = local_.align(scan.features(), prior);
+    const Solution followed =
+        relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
+    return so3_log(found.trajectory.end().rotation.inverse() * followed.trajectory.end().rotation)
+        .norm();
+  }
+};
+
+// Walls that seem turned although the ground is not: what fits there is not the place.
+TEST_F(OnASlope, FollowsNoTurnUnderWhichTheGroundDoesNotFit) {
+  EXPECT_GT(turned_rad(yard_on_slope(0.0), 0.6), 0.3) << "the sensor turned";
+  EXPECT_EQ(turned_rad(yard_on_slope(-0.5), 0.0), 0.0) << "the walls did";
 }
 
 TEST_F(RelocalizerTest, LeavesAnAlignmentThatFitsAlone) {
