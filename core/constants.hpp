@@ -206,6 +206,9 @@ inline constexpr double kWeakShare = 0.5;
 
 /// Weight of the newest scan in the usual fit.
 inline constexpr double kFitSmoothing = 0.3;
+/// Weight of the newest scan in the variance of the fit from scan to scan. With 0.3 one scan in
+/// which an abrupt turn began made the next one pass for usual. Range: 0.05 to 0.1.
+inline constexpr double kFitVarianceSmoothing = 0.1;
 /// Sigmas by which a fit must be worse than usual, or the difference may be chance.
 inline constexpr double kPoorFitSigmas = 3.0;
 /// Fit over the usual one, below which a better alignment may have been missed. A scan whose solver

@@ -43,6 +43,28 @@ TEST(StructureFit, FollowsTheSceneWithinAFewScans) {
   EXPECT_EQ(fit.relative(with_inliers(300.0), kStructure), 1.0);
 }
 
+// In hills now half of the structure fits, now a tenth: at a crest all that is seen is new.
+TEST(StructureFit, LearnsHowMuchTheFitVaries) {
+  StructureFit varied;
+  for (int k = 0; k < 30; ++k) varied.learn(with_inliers(k % 2 == 0 ? 500.0 : 100.0), kStructure);
+  EXPECT_EQ(varied.relative(with_inliers(10.0), kStructure), 1.0);
+  for (int k = 0; k < 60; ++k) varied.learn(with_inliers(300.0), kStructure);
+  EXPECT_NEAR(varied.relative(with_inliers(150.0), kStructure), 0.5, 1e-3) << "steady again";
+}
+
+// An abrupt turn begins within a scan, which fits half as well, and the next one hardly fits.
+TEST(StructureFit, OneScanIsNoVariance) {
+  StructureFit fit = learnt(170.0, 10);
+  fit.learn(with_inliers(90.0), kStructure);
+  EXPECT_LT(fit.relative(with_inliers(20.0), kStructure), 0.25);
+}
+
+TEST(StructureFit, ChanceIsNoVariance) {
+  StructureFit fit = learnt(800.0);
+  for (int k = 0; k < 30; ++k) fit.learn(with_inliers(k % 2 == 0 ? 780.0 : 820.0), kStructure);
+  EXPECT_LT(fit.relative(with_inliers(690.0), kStructure), 1.0);
+}
+
 TEST(StructureFit, LearnsNothingWhereThereIsNoStructure) {
   StructureFit fit = learnt(800.0);
   fit.learn(with_inliers(0.0), 0.0);
