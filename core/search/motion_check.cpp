@@ -89,7 +89,9 @@ void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis, bool is_dead_re
 double MotionCheck::depth_of_second_minimum(const Eigen::Vector2d& axis) {
   const double tracked =
       spaced_scans_.occupied_under(Eigen::Vector2d::Zero(), Subsample::all, grid_);
-  if (tracked < 1.0) return 0.0;  // no structure at all
+  // Where scans hardly share cells, or there are none, the number varies by chance.
+  const double alone = spaced_scans_.occupied_alone(grid_);
+  if (alone - tracked <= search::kLeastShared * alone) return 0.0;
   double deepest = -std::numeric_limits<double>::max();
   for (const double direction : {-1.0, 1.0}) {
     double highest = tracked;

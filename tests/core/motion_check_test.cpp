@@ -237,6 +237,26 @@ TEST(MotionCheck, ALostScanEndsTheAmbiguityOnce) {
   EXPECT_FALSE(check.ambiguity_ended());
 }
 
+// Each scan sees other steep ground, in lines across the way as rings meet it. Some lines of two
+// scans come to lie on each other under some motion.
+TEST(MotionCheck, WhereScansShareLittleTheMotionIsNotAmbiguous) {
+  std::minstd_rand random(5);
+  std::uniform_real_distribution<float> anywhere_m(-40.0F, 40.0F);
+  MotionCheck check(2000);
+  for (int k = 1; k <= 300; ++k) {
+    std::vector<Feature> features;
+    for (int line = 0; line < 12; ++line) {
+      Feature f{};
+      f.kind = FeatureKind::structure;
+      f.x_m = anywhere_m(random);
+      f.y_m = anywhere_m(random);
+      for (int point = 0; point < 20; ++point, f.y_m += 0.5F) features.push_back(f);
+    }
+    take(check, k, features);
+    EXPECT_FALSE(check.is_ambiguous()) << k;
+  }
+}
+
 TEST(MotionCheck, AFewCarsDoNotMakeItAmbiguous) {
   EXPECT_EQ(ambiguous_scans({150, 8, 1.0, 0.05}, kSpeed_mps), 0);
 }
