@@ -32,7 +32,7 @@ CellMap::CellMap(const CellMapConfig& config)
   const auto capacity = static_cast<std::size_t>(config.capacity);
   cells_.reserve(capacity);
   sums_.reserve(capacity);
-  if (config.one_sided) rays_.assign(capacity, Eigen::Vector3f::Zero());
+  rays_.assign(capacity, Eigen::Vector3f::Zero());
   if (config.with_sensitivity) {
     sensitivity_rows_.assign(row_of(capacity, first_row()), SensitivityRow::Zero());
   }
@@ -53,7 +53,7 @@ std::int32_t CellMap::make(const CellKey& key) {
     cells_[static_cast<std::size_t>(at)] = Cell{};
     sums_[static_cast<std::size_t>(at)] = Moments{};
   }
-  if (config_.one_sided) rays_[static_cast<std::size_t>(at)].setZero();
+  rays_[static_cast<std::size_t>(at)].setZero();
   for (int row = first_row(); row < 3 && config_.with_sensitivity; ++row) {
     sensitivity_rows_[row_of(static_cast<std::size_t>(at), row)].setZero();
   }
@@ -186,9 +186,7 @@ void CellMap::fit(Cell& cell) const {
     const float weight = std::max(0.0F, 1.0F / variance - 1.0F / (thin_m * thin_m));
     cell.information += weight * outer(solver.eigenvectors().col(k));
   }
-  if (config_.one_sided) {
-    cell.inwards = direction_of(matrix_of(cell.information) * rays_around(neighbours));
-  }
+  cell.inwards = direction_of(matrix_of(cell.information) * rays_around(neighbours));
 }
 
 void CellMap::clear() {

@@ -34,9 +34,6 @@ struct CellMapConfig {
   /// ground was seen. The end of a strip, at a wall or at one ring, moves with the sensor and would
   /// hold the sensor in place; the foot of the wall would make it a slope.
   bool level = false;
-  /// Whether a surface is matched only from the side from which it was seen. The two faces of a
-  /// thin wall lie in one cell, and a sensor that comes through the door sees the other one.
-  bool one_sided = false;
   /// Whether the sensitivities of the points are averaged as well; of ground only the height's.
   bool with_sensitivity = false;
   /// The most cells. Points that need another one are left out and counted.
@@ -47,7 +44,13 @@ struct CellMapConfig {
 /// window. It gives information only along directions in which the points are thin against the
 /// window: a wall along its normal, a trunk across its axis, foliage hardly at all. Points that
 /// fill the window evenly would only hold the scan in place, and drag it towards what was seen
-/// first. Memory is reserved at construction. Not thread-safe.
+/// first.
+///
+/// A surface is matched only from the side from which it was seen. The two faces of a thin wall lie
+/// in one cell, and a sensor that comes through the door sees the other one. On stairs it sees
+/// first the lower face of a landing, then the upper one.
+///
+/// Memory is reserved at construction. Not thread-safe.
 class CellMap {
  public:
   static constexpr std::int32_t kNone = CellTable::kNone;
@@ -130,7 +133,7 @@ class CellMap {
     if (at == kNone) return make(key);
     prefetch_sums(at);
     const auto cell = static_cast<std::size_t>(at);
-    if (config_.one_sided) __builtin_prefetch(&rays_[cell]);
+    __builtin_prefetch(&rays_[cell]);
     if (config_.with_sensitivity) __builtin_prefetch(&sensitivity_rows_[row_of(cell, 2)]);
     return at;
   }
@@ -146,10 +149,8 @@ class CellMap {
     const Eigen::Vector3f p = (point_m - center_of(key.index)).cast<float>();
     const float kept = count_of(sums) >= map::kMemory ? kKept : 1.0F;
     add_to(sums, kept, moments_of(p, spread, gap.outer_m2));
-    if (config_.one_sided) {
-      Eigen::Vector3f& rays = rays_[static_cast<std::size_t>(at)];
-      rays = kept * rays + ray;
-    }
+    Eigen::Vector3f& rays = rays_[static_cast<std::size_t>(at)];
+    rays = kept * rays + ray;
     if (!config_.with_sensitivity) return;
     for (int row = first_row(); row < 3; ++row) {
       SensitivityRow& sum = sensitivity_rows_[row_of(static_cast<std::size_t>(at), row)];
@@ -255,7 +256,7 @@ class CellMap {
   CellTable table_;
   std::vector<Cell> cells_;
   std::vector<Moments> sums_;                     // what insert() sums, from the cell's centre
-  std::vector<Eigen::Vector3f> rays_;             // sums of unit vectors, where sides count
+  std::vector<Eigen::Vector3f> rays_;             // sums of unit vectors
   std::vector<SensitivityRow> sensitivity_rows_;  // sums as well, where they are asked for
   std::int32_t free_ = kNone;                     // the cell removed last; it names the one before
   std::size_t sweep_ = 0;

@@ -14,7 +14,6 @@ LocalMaps make_cells(const DefaultConfig& c) {
     return CellMapConfig{.cell_m = static_cast<float>(cell_m),
                          .noise_m = static_cast<float>(c.noise_m),
                          .level = kind == FeatureKind::ground,
-                         .one_sided = kind == FeatureKind::structure,
                          .with_sensitivity = c.calibrate_beams && cell_m == c.cell_m,
                          .capacity = capacity};
   };
@@ -108,8 +107,8 @@ void KeyframeMap::insert_held() {
   for (const Feature& f : held_.features) {
     const Eigen::Vector3f turned_m = sampled_.turn(f.s, {f.x_m, f.y_m, f.z_m});
     LocalMaps::Point point{turned_m.cast<double>() + sampled_.origin_m(f.s),
-                           sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m}), f.kind};
-    if (f.kind == FeatureKind::structure) point.ray = turned_m.normalized();
+                           sampled_.turn(f.s, {f.dx_m, f.dy_m, f.dz_m}), f.kind,
+                           turned_m.normalized()};
     if (config_.calibrate_beams) {
       point.sensitivity =
           sampled_.turn_columns(f.s, moved_by_beams(f, held_.sensitivity.correction)) +

@@ -41,20 +41,34 @@ TEST_F(Filled, AWallInformsAlongItsNormalOnly) {
 
 // A wall of a room is seen again in the next room, from the other side and by its width nearer.
 TEST_F(Filled, AWallIsMatchedOnlyFromTheSideItWasSeenFrom) {
-  CellMap walls({.one_sided = true});
   for (int k = 0; k < 4000; ++k) {
     const Eigen::Vector3d on_wall(5.0, uniform(-3, 3), uniform(-3, 3));
-    walls.insert(on_wall, no_reach_, on_wall.cast<float>().normalized());  // from the origin
+    map_.insert(on_wall, no_reach_, on_wall.cast<float>().normalized());  // from the origin
   }
   const Eigen::Vector3d probe(5.1, 1.0, 0.2);
   const auto knows = [&](const Eigen::Vector3f& ray) {
-    return walls.find(probe, ray).information != nullptr;
+    return map_.find(probe, ray).information != nullptr;
   };
   EXPECT_TRUE(knows({1.0F, 0.0F, 0.0F}));
   EXPECT_TRUE(knows({0.2F, -1.0F, 0.3F}));  // along the wall
   EXPECT_FALSE(knows({-1.0F, 0.0F, 0.0F}));
   EXPECT_FALSE(knows({-0.2F, 1.0F, 0.3F}));
   EXPECT_TRUE(knows({0.0F, 0.0F, 0.0F}));  // from both sides, then
+}
+
+// Below a landing the sensor sees its lower face, and on it the upper one.
+TEST_F(Filled, AFloorIsNotMatchedFromBelow) {
+  CellMap ground({.level = true});
+  for (int k = 0; k < 4000; ++k) {
+    const Eigen::Vector3d on_ceiling(uniform(2, 8), uniform(-3, 3), 1.2);
+    ground.insert(on_ceiling, no_reach_, on_ceiling.cast<float>().normalized());
+  }
+  const Eigen::Vector3d probe(5.0, 0.0, 1.3);
+  const auto knows = [&](const Eigen::Vector3f& ray) {
+    return ground.find(probe, ray).information != nullptr;
+  };
+  EXPECT_TRUE(knows({1.0F, 0.0F, 0.1F}));
+  EXPECT_FALSE(knows({1.0F, 0.0F, -0.1F}));
 }
 
 TEST_F(Filled, ATrunkInformsAcrossItsAxisOnly) {

@@ -34,7 +34,7 @@ std::vector<Eigen::Vector3d> room(unsigned seed, int count) {
 
 LocalMaps empty_maps() {
   const auto level = [](float cell_m) {
-    const CellMapConfig config{.cell_m = cell_m, .one_sided = true, .capacity = 20000};
+    const CellMapConfig config{.cell_m = cell_m, .capacity = 20000};
     return std::array{config, config};
   };
   return LocalMaps({level(0.25F), level(0.5F), level(1.5F)});
