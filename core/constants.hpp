@@ -270,8 +270,9 @@ inline constexpr int kAmbiguitySteps = 5;
 /// Weight of the newest depth of a second minimum, and the mean depth from which the motion is
 /// ambiguous, in sigmas. Where everything is fixed the mean stays below 0.7 in 98 of 100 scans.
 inline constexpr double kAmbiguitySmoothing = 0.5, kAmbiguousSigmas = 0.8;
-/// Part of their cells that scans must share to tell two motions apart. On bare hills they share
-/// 0.01 to 0.32 of them; jams, where two motions fit, 0.38 or more.
+/// Part of their cells that scans must share under a motion that may be the true one. On bare hills
+/// they share 0.01 to 0.32 as tracked; jams, where two motions fit, 0.38 or more. Under the motion
+/// that refutes a truck's they share 0.48 or more.
 inline constexpr double kLeastShared = 0.35;
 /// Scans in a row with an ambiguous motion, after which the map is not believed.
 inline constexpr int kAmbiguousScans = 10;

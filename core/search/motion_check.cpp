@@ -66,8 +66,10 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
   const int least = least_occupied(axis, Subsample::all, tracked);
   const int alone = scans_.occupied_alone(grid_);
   // Scans that hardly have cells in common tell nothing: then the number of all cells counts. The
-  // best of sixteen false motions may be two sigmas better by chance.
-  return is_significant(alone - least, alone - tracked, search::kPreferSigmas) &&
+  // best of sixteen false motions may be two sigmas better by chance. On bare hills rings meet
+  // steep ground at the same ranges from scan to scan, as though some of it moved with the sensor.
+  return alone - least > search::kLeastShared * alone &&
+         is_significant(alone - least, alone - tracked, search::kPreferSigmas) &&
          tracked - least > search::kDropSigmas * std::sqrt(static_cast<double>(tracked));
 }
 
