@@ -56,7 +56,7 @@ TEST_P(Worlds, DriveIsClearAndOnTheGround) {
 
 INSTANTIATE_TEST_SUITE_P(All, Worlds,
                          testing::Combine(testing::Values("street", "park", "loop", "country",
-                                                          "highway", "field", "corridor"),
+                                                          "highway", "field", "hills", "corridor"),
                                           testing::Values(2U)),
                          [](const auto& test_case) {
                            return std::get<0>(test_case.param) +

@@ -112,6 +112,26 @@ TEST(Splice, WithAnotherPlaceBeginsAnotherSessionWithinTwoSeconds) {
   }
 }
 
+// Nearly all that is seen is ground. What little structure there is fits by chance or not at all.
+TEST(Hills, ThatAreBareAreOneSession) {
+  for (const std::uint64_t seed : {21U, 22U, 24U}) {
+    SCOPED_TRACE(seed);
+    const Recording recording = recording_of("hills", {.speed_mps = 6.0, .duration_s = 20.0}, seed);
+    SessionRun run;
+    for (std::size_t k = 0; k < recording.scans.size(); ++k) {
+      run.see(recording.scans[k], recording.truth[k], false);
+    }
+    const Sessions& o = run.out();
+    std::printf("hills %d: %d tracked within %.3f m; %d degraded, %.3f m, %.2f deg\n",
+                static_cast<int>(seed), o.tracked.count, o.tracked.worst_m, o.degraded.count,
+                o.degraded.worst_m, o.degraded.worst_rad / kDeg);
+    EXPECT_EQ(o.restarts, 0U);
+    EXPECT_GT(o.tracked.count + o.degraded.count, 150);  // from the first one tracked on
+    EXPECT_LT(std::max(o.tracked.worst_m, o.degraded.worst_m), 1.0);
+    EXPECT_LT(std::max(o.tracked.worst_rad, o.degraded.worst_rad), 3.0 * kDeg);
+  }
+}
+
 // A turntable at full speed within one scan: 9 to 36 degrees from each scan to the next.
 TEST(Spin, BegunWithinAScanIsFollowed) {
   for (const double rate_dps : {90.0, -180.0, 360.0}) {

@@ -22,6 +22,7 @@ const std::vector<Entry>& entries() {
        build_country},
       {{"highway", "barriers, gantries, bridges, dense and fast traffic", 25.0}, build_highway},
       {{"field", "open rough ground, a line of posts, few trees", 3.0}, build_field},
+      {{"hills", "bare hills and heaps of rubble, hardly a bush", 6.0}, build_hills},
       {{"corridor", "60 m long, 2 m wide, doors; the drive ends before its end", 1.0},
        build_corridor},
   };

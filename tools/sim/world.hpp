@@ -48,6 +48,7 @@ World build_loop(std::uint64_t seed, double length_m);
 World build_highway(std::uint64_t seed, double length_m);
 World build_country(std::uint64_t seed, double length_m);
 World build_field(std::uint64_t seed, double length_m);
+World build_hills(std::uint64_t seed, double length_m);
 /// Always 60 m long; the sensor stops before its end.
 World build_corridor(std::uint64_t seed, double length_m);
 
