@@ -206,10 +206,10 @@ inline constexpr double kWeakShare = 0.5;
 
 /// Weight of the newest scan in the usual fit.
 inline constexpr double kFitSmoothing = 0.3;
-/// Weight of the newest scan in the variance of the fit from scan to scan. With 0.3 one scan in
+/// Weight of the newest scan in the variance of the fit about the usual one. With 0.3 one scan in
 /// which an abrupt turn began made the next one pass for usual. Range: 0.05 to 0.1.
 inline constexpr double kFitVarianceSmoothing = 0.1;
-/// Sigmas by which a fit must be worse than usual, or the difference may be chance.
+/// Sigmas by which a fit must be worse than usual, or the difference is chance or usual here.
 inline constexpr double kPoorFitSigmas = 3.0;
 /// Fit over the usual one, below which a better alignment may have been missed. A scan whose solver
 /// did not converge needs as much.
@@ -271,8 +271,9 @@ inline constexpr int kAmbiguitySteps = 5;
 /// ambiguous, in sigmas. Where everything is fixed the mean stays below 0.7 in 98 of 100 scans.
 inline constexpr double kAmbiguitySmoothing = 0.5, kAmbiguousSigmas = 0.8;
 /// Part of their cells that scans must share under a motion that may be the true one. On bare hills
-/// they share 0.01 to 0.32 as tracked; jams, where two motions fit, 0.38 or more. Under the motion
-/// that refutes a truck's they share 0.48 or more.
+/// they share 0.01 to 0.32 as tracked, and 0.16 to 0.49 under the false motion that fits best.
+/// Where two motions fit in a jam they share 0.38 or more as tracked, and where a truck is followed
+/// 0.48 or more under the true motion.
 inline constexpr double kLeastShared = 0.35;
 /// Scans in a row with an ambiguous motion, after which the map is not believed.
 inline constexpr int kAmbiguousScans = 10;
@@ -333,7 +334,8 @@ inline constexpr double kInPlace_m = 0.2;
 
 /// Weight of the newest scan in the design effect.
 inline constexpr double kDesignEffectSmoothing = 0.1;
-/// Design effect of a scan over the mean, from which it counts by its own. Range: 1 to 2, by NEES.
+/// Design effect of a scan over the mean with it, from which it counts by its own. Range: 1 to 2,
+/// by NEES.
 inline constexpr double kUnusualDesignEffect = 2.0;
 /// Least design effect: a simulation without noise is no reason to be sure.
 inline constexpr double kLeastDesignEffect = 0.05;

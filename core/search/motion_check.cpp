@@ -65,9 +65,10 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
   const int tracked = scans_.occupied_under(as_tracked, Subsample::all, grid_);
   const int least = least_occupied(axis, Subsample::all, tracked);
   const int alone = scans_.occupied_alone(grid_);
-  // Scans that hardly have cells in common tell nothing: then the number of all cells counts. The
-  // best of sixteen false motions may be two sigmas better by chance. On bare hills rings meet
-  // steep ground at the same ranges from scan to scan, as though some of it moved with the sensor.
+  // The true motion lays much of the scans on each other. On bare hills a false one lays some:
+  // rings meet steep ground at the same ranges from scan to scan, as though it moved with the
+  // sensor. Scans that hardly have cells in common tell nothing: then the number of all cells
+  // counts. The best of sixteen false motions may be two sigmas better by chance.
   return alone - least > search::kLeastShared * alone &&
          is_significant(alone - least, alone - tracked, search::kPreferSigmas) &&
          tracked - least > search::kDropSigmas * std::sqrt(static_cast<double>(tracked));

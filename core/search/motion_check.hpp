@@ -33,11 +33,12 @@ class MotionCheck {
   void add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
            const ScanTiming& timing);
   /// To be called once after each add(). Compares the tracked motion with others. Returns whether
-  /// another one was significantly better both now and the last time. `axis`: horizontal unit
-  /// vector along or across the surroundings.
+  /// another one was significantly better both now and the last time, and scans share enough cells
+  /// under it (kLeastShared). `axis`: horizontal unit vector along or across the surroundings.
   bool compare(const Eigen::Vector2d& axis);
   /// To be called once after each compare(). Looks for a second minimum over 15 scans
-  /// (kAmbiguityStride). `is_dead_reckoned`: along a direction, during the newest scan.
+  /// (kAmbiguityStride); none where they share too few cells. `is_dead_reckoned`: along a
+  /// direction, during the newest scan.
   void observe_ambiguity(const Eigen::Vector2d& axis, bool is_dead_reckoned);
   /// Whether there has been one for some time.
   [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }

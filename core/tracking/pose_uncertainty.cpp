@@ -33,7 +33,7 @@ void PoseUncertainty::learn(const Vector6d& design_effect, const Matrix6d& data_
   data_information_ = data_weight_ * data_information;
   mean_effect_ += tracking::kDesignEffectSmoothing *
                   (design_effect.cwiseMax(tracking::kLeastDesignEffect) - mean_effect_);
-  // The mean begins at the least design effect: it is compared without the part that still has.
+  // The mean begins at the least design effect, and would make each early scan an unusual one.
   mean_weight_ += tracking::kDesignEffectSmoothing * (1.0 - mean_weight_);
   const Eigen::Array<bool, 6, 1> is_unusual =
       mean_weight_ * design_effect.array() > tracking::kUnusualDesignEffect * mean_effect_.array();

@@ -137,8 +137,9 @@ Solution Relocalizer::follow_turn(const Solution& found, const Observation& scan
 }
 
 /// The best alignment from the most likely turns, if significantly more of the structure fits than
-/// in `found`, and not less of the ground. One that left the predicted place is not a turn, and is
-/// not taken. Of the little structure on bare hills more may fit by chance under some turn.
+/// in `found`. Not taken are those that left the predicted place, which are no turns, and those in
+/// which significantly less of the ground fits. Of the little structure on bare hills more may fit
+/// by chance under some turn.
 std::optional<Solution> Relocalizer::better_turned(const Solution& found, const Observation& scan,
                                                    const Prior& prior,
                                                    const AlignmentHistory& history,
@@ -154,11 +155,13 @@ std::optional<Solution> Relocalizer::better_turned(const Solution& found, const 
     const Solution other =
         local.align(*scan.features, prior_turned(by, may_begin_elsewhere, prior), scan.levels);
     const double departed_m = (other.trajectory.end().translation_m - place_m).norm();
-    if (departed_m < tracking::kFoundPlace_m && fits_less(best, other)) best = other;
+    const bool loses_ground =
+        is_significant(ground_inliers(found), ground_inliers(other), search::kPreferSigmas);
+    if (departed_m < tracking::kFoundPlace_m && !loses_ground && fits_less(best, other)) {
+      best = other;
+    }
   }
-  const bool loses_ground =
-      is_significant(ground_inliers(found), ground_inliers(best), search::kPreferSigmas);
-  const bool is_better = fits_significantly_better(best, found) && !loses_ground &&
+  const bool is_better = fits_significantly_better(best, found) &&
                          is_explained(best, history.fit.relative(best, scan.structure));
   return is_better ? std::optional(best) : std::nullopt;
 }

@@ -57,7 +57,7 @@ TEST_F(Filled, AWallIsMatchedOnlyFromTheSideItWasSeenFrom) {
 }
 
 // Below a landing the sensor sees its lower face, and on it the upper one.
-TEST_F(Filled, AFloorIsNotMatchedFromBelow) {
+TEST_F(Filled, ALandingIsMatchedOnlyFromTheSideItWasSeenFrom) {
   CellMap ground({.level = true});
   for (int k = 0; k < 4000; ++k) {
     const Eigen::Vector3d on_ceiling(uniform(2, 8), uniform(-3, 3), 1.2);

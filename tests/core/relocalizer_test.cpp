@@ -140,7 +140,7 @@ test::Scene yard_on_slope(double turned_rad) {
 class OnASlope : public RelocalizerTest {
  protected:
   void SetUp() override { stand_in(yard_on_slope(0.0)); }
-  /// How far a scan is turned that is taken at rest. 0: the prediction is kept.
+  /// How far follow_turn() turns a scan in which the sensor turns by `sensor_rad`. 0: not at all.
   double turned_rad(const test::Scene& scene, double sensor_rad) {
     const test::ObservedScan scan(
         scene, [&](double s) { return at(0.0, 0.0, sensor_rad * s); }, 6);

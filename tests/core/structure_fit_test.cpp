@@ -62,7 +62,7 @@ TEST(StructureFit, OneScanIsNoVariance) {
 TEST(StructureFit, ChanceIsNoVariance) {
   StructureFit fit = learnt(800.0);
   for (int k = 0; k < 30; ++k) fit.learn(with_inliers(k % 2 == 0 ? 780.0 : 820.0), kStructure);
-  EXPECT_LT(fit.relative(with_inliers(690.0), kStructure), 1.0);
+  EXPECT_LT(fit.relative(with_inliers(705.0), kStructure), 1.0) << "3 sigma of 800 are 85";
 }
 
 TEST(StructureFit, LearnsNothingWhereThereIsNoStructure) {
