@@ -66,8 +66,7 @@ inline constexpr double kApart_m = 0.3;
 /// Radians: a larger eccentricity or common error is not applied. In a scene of nothing but round
 /// trunks the alignment has an error in one direction, and the estimate grows beyond this.
 inline constexpr double kLargest_rad = 3.0 * kSigma_rad;
-/// Radians: a smaller eccentricity is not applied. That of an exact encoder is mostly estimated as
-/// 0.02 to 0.39 mrad, which bends the path.
+/// Radians: a smaller eccentricity is not applied. Of an exact encoder up to 0.39 mrad is found.
 inline constexpr double kSmallest_rad = 0.4e-3;
 /// Radians: a smaller common error of the elevations is not applied. Where there is none, up to so
 /// much is found with 64 beams under velosim's --real. Range: 0 to 0.5 mrad on a first run.
@@ -96,7 +95,7 @@ inline constexpr float kMemory = 30.0F;
 /// Metres, 1 sigma of one point about the surface around it. In a young cell the points come from
 /// few scans and share their errors.
 inline constexpr float kPoint_m = 0.05F, kYoungPoint_m = 0.1F;
-/// Keyframes: the age up to which a cell is young. Range: 5 to 10; 2 is too few.
+/// Keyframes up to which a cell is young. Range: 5 to 10; 2 is too few.
 inline constexpr std::uint32_t kYoungCell = 5;
 /// A direction gives information if the points spread (1 sigma) over less than this part of the
 /// window's width; an even filling has 0.29. Range: 0.065 to 0.13; half of it costs 1.5 times the
@@ -119,8 +118,7 @@ inline constexpr std::size_t kSweepScans = 64;
 /// Motion within a scan and from scan to scan.
 namespace lilo::core::motion {
 
-/// Metres: where rotations and translations share a bound, a rotation counts as the way of what is
-/// seen so far away.
+/// Metres: where both share a bound, a rotation counts as the way of what is so far away.
 inline constexpr double kLever_m = 10.0;
 
 /// m/s^2, 20 g: no carrier of a sensor changes its velocity so fast over a scan. Range: 100 to 500.
@@ -145,8 +143,8 @@ inline constexpr double kLeastGap_s = 1e-5;
 /// Seconds: over such a gap a prediction is good to half a cell, so that an alignment which begins
 /// there finds the sensor.
 inline constexpr double kShortGap_s = 0.35;
-/// Seconds: gap up to which a prediction is made. After a longer one the sensor is predicted where
-/// it was: either the clock was set, or the sensor may be anywhere.
+/// Seconds: after a longer gap the clock was set, or the sensor may be anywhere. It is predicted
+/// where it was.
 inline constexpr double kLongestGap_s = 2.5;
 
 /// 1 sigma (m, rad) of the pose before the first scan. Range: 0.5e-4 to 2e-4.
@@ -163,7 +161,7 @@ inline constexpr double kInitialYaw_radps = 0.5, kInitialTilt_radps = 0.1;
 inline constexpr double kNoiseSmoothing = 0.1;
 /// Factors of that estimate: what shakes faster than the scans come cancels in part between the
 /// middles of two. Rotation (range: 8 to 16; with 32 one of 16 drives through rooms was lost) and
-/// translation (range: 1 to 8), which shaking changes less: 5 m/s^2 are 5 mm at 5 Hz, 0.3 at 20 Hz.
+/// translation (range: 1 to 8).
 inline constexpr double kFasterRotation = 16.0, kFasterTranslation = 8.0;
 /// Changes of the motion, after a map was begun, that tell how uncertain its first scan is. Range:
 /// 5 to 20, by NEES.
@@ -183,8 +181,7 @@ inline constexpr double kSetOff_m = 0.1;
 /// One scan to the map.
 namespace lilo::core::registration {
 
-/// Far from the solution one of so many features is used, and kernels are so many times as wide.
-/// 1: abrupt turns are lost.
+/// Far from the solution: one of so many features, kernels so many times as wide. 1 loses turns.
 inline constexpr std::size_t kFarStride = 4;
 /// Metres: a step below which the solution is near; rotations count by kLever_m.
 inline constexpr double kNearStep_m = 0.03;
@@ -206,8 +203,7 @@ inline constexpr double kWeakShare = 0.5;
 
 /// Weight of the newest scan in the usual fit.
 inline constexpr double kFitSmoothing = 0.3;
-/// Weight of the newest scan in the variance of the fit about the usual one. With 0.3 one scan in
-/// which an abrupt turn began made the next one pass for usual. Range: 0.05 to 0.1.
+/// The same in the variance of the fit. Range: 0.05 to 0.1; with 0.3 abrupt turns were lost.
 inline constexpr double kFitVarianceSmoothing = 0.1;
 /// Sigmas by which a fit must be worse than usual, or the difference is chance or usual here.
 inline constexpr double kPoorFitSigmas = 3.0;
@@ -263,17 +259,15 @@ inline constexpr std::array<double, 4> kFalseMotions_mps{1.0, 2.0, 3.0, 4.0};
 inline constexpr int kRefutingScans = 2;
 /// One of so many scans is laid over the others where two motions may fit: six span 1.5 s at 10 Hz.
 inline constexpr int kAmbiguityStride = 3;
-/// m/s: step of the speeds tried then, and their number to either side. At 10 Hz one
-/// step moves the oldest scan by a cell.
+/// m/s: step of the speeds tried then, by which the oldest scan moves a cell; to either side.
 inline constexpr double kAmbiguityStep_mps = 1.0 / 3.0;
 inline constexpr int kAmbiguitySteps = 5;
 /// Weight of the newest depth of a second minimum, and the mean depth from which the motion is
 /// ambiguous, in sigmas. Where everything is fixed the mean stays below 0.7 in 98 of 100 scans.
 inline constexpr double kAmbiguitySmoothing = 0.5, kAmbiguousSigmas = 0.8;
-/// Part of their cells that scans must share under a motion that may be the true one. On bare hills
-/// they share 0.01 to 0.32 as tracked, and 0.16 to 0.49 under the false motion that fits best.
-/// Where two motions fit in a jam they share 0.38 or more as tracked, and where a truck is followed
-/// 0.48 or more under the true motion.
+/// Part of their cells that scans must share under a motion that may be the true one. As tracked it
+/// is 0.01 to 0.32 on bare hills and 0.38 or more in jams where two motions fit; 0.16 to 0.49 under
+/// a false motion on hills, 0.48 or more under the true one where a truck is followed.
 inline constexpr double kLeastShared = 0.35;
 /// Scans in a row with an ambiguous motion, after which the map is not believed.
 inline constexpr int kAmbiguousScans = 10;
@@ -334,17 +328,15 @@ inline constexpr double kInPlace_m = 0.2;
 
 /// Weight of the newest scan in the design effect.
 inline constexpr double kDesignEffectSmoothing = 0.1;
-/// Design effect of a scan over the mean with it, from which it counts by its own. Range: 1 to 2,
-/// by NEES.
+/// Design effect over its mean, from which a scan counts by its own. Range: 1 to 2, by NEES.
 inline constexpr double kUnusualDesignEffect = 2.0;
 /// Least design effect: a simulation without noise is no reason to be sure.
 inline constexpr double kLeastDesignEffect = 0.05;
 /// Scans that share the error of a cell.
 inline constexpr double kScansSharingErrors = 3.0;
 /// Part of the information from the scan below which the motion along a weak direction is dead
-/// reckoned. Along a smooth tunnel a scan still seems to give 0.03 to 0.1, because noise tilts the
-/// normals. Other weak directions mostly have 0.2 or more; there only the alignment's covariance
-/// counts. Range: 0.1 to 0.25, by NEES.
+/// reckoned. Along a smooth tunnel it is 0.03 to 0.1, because noise tilts the normals; elsewhere
+/// mostly 0.2 or more. Range: 0.1 to 0.25, by NEES.
 inline constexpr double kDeadReckonedShare = 0.15;
 /// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
 inline constexpr double kMostlyTurns_m = 0.3;

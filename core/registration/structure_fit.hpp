@@ -17,7 +17,7 @@ namespace lilo::core {
 class StructureFit {
  public:
   /// The part of the structure that fits, over the usual part. 1 where the difference may be
-  /// chance, and while the usual part is unknown. `structure`: number of structure features.
+  /// chance or is usual here, and while the usual part is unknown. `structure`: number of features.
   [[nodiscard]] double relative(const Solution& solution, double structure) const {
     const double usual = usual_ * structure, found = solution.structure_inliers;
     const double variance = usual + variance_ * structure * structure;

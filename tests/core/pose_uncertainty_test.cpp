@@ -131,7 +131,7 @@ TEST(PoseUncertainty, AnUnusualScanCountsByItsOwnDesignEffect) {
   young.learn(Vector6d::Constant(11.0), kAllFromScan);
   EXPECT_NEAR(young.covariance(state_of(Vector6d::Ones()))(3, 3) / kUnit, 11.0, 1e-9);
   EXPECT_NEAR(variance_after({1.8}), 1.08, 1e-9);
-  EXPECT_NEAR(variance_after({11.0}), 11.0, 1e-9);  // the usual one is 2 now
+  EXPECT_NEAR(variance_after({11.0}), 11.0, 1e-9);  // the mean is 2 now
   EXPECT_NEAR(variance_after({11.0, 3.0}), 2.1, 1e-9);
 }
 

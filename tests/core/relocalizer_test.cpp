@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 namespace lilo::core {
 namespace {
@@ -27,7 +28,7 @@ class RelocalizerTest : public testing::Test {
         local_.accept_first(scan.timing());
       } else {
         local_.accept(scan.timing(), solution);
-        // Not while the motion is searched and the map is young: ever more fits it.
+        // The tracker begins at the fourth to sixth scan. Of a young map ever more fits.
         if (k >= 4) history_.fit.learn(solution, scan.observation().structure);
       }
       history_.end_ns = scan.timing().end_ns;
@@ -45,6 +46,20 @@ class RelocalizerTest : public testing::Test {
         relocalizer_.find(scan.observation(), prior, at_prediction, history_, local_);
     if (!found) return std::nullopt;
     return found->trajectory.end();
+  }
+
+  /// The scan after those of the map, aligned from the prediction, and what follow_turn() makes of
+  /// it.
+  struct Followed {
+    Prior prior;
+    Solution found, followed;
+  };
+  Followed follow_turn(const test::Scene& scene, const std::function<Pose(double)>& motion) {
+    const test::ObservedScan scan(scene, motion, 6);
+    const Prior prior = local_.predict(scan.timing());
+    const Solution found = local_.align(scan.features(), prior);
+    return {prior, found,
+            relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_)};
   }
 
   LocalOdometry local_{DefaultConfig{}, kMost};
@@ -82,11 +97,7 @@ TEST_F(RelocalizerTest, FindsNothingInAnotherPlace) {
 TEST_F(RelocalizerTest, FollowsATurnThatBeginsWithinTheScan) {
   constexpr double kEnd_rad = 0.6;
   const auto turning = [](double s) { return at(0.0, 0.0, kEnd_rad * s); };
-  const test::ObservedScan scan(test::yard(), turning, 6);
-  const Prior prior = local_.predict(scan.timing());
-  const Solution found = local_.align(scan.features(), prior);
-  const Solution followed =
-      relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
+  const Solution followed = follow_turn(test::yard(), turning).followed;
   const Pose error = at(0.0, 0.0, kEnd_rad).inverse() * followed.trajectory.end();
   EXPECT_LT(error.translation_m.norm(), 0.05);
   EXPECT_LT(so3_log(error.rotation).norm(), 0.02);
@@ -98,11 +109,7 @@ TEST_F(RelocalizerTest, FollowsATurnThatBeganAtTheEndOfTheLastScan) {
   const auto turning = [](double s) {
     return at(0.0, 0.0, kBegin_rad + (kEnd_rad - kBegin_rad) * s);
   };
-  const test::ObservedScan scan(test::yard(), turning, 6);
-  const Prior prior = local_.predict(scan.timing());
-  const Solution found = local_.align(scan.features(), prior);
-  const Solution followed =
-      relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
+  const Solution followed = follow_turn(test::yard(), turning).followed;
   const Pose error = at(0.0, 0.0, kEnd_rad).inverse() * followed.trajectory.end();
   EXPECT_LT(error.translation_m.norm(), 0.05);
   EXPECT_LT(so3_log(error.rotation).norm(), 0.02);
@@ -112,11 +119,7 @@ TEST_F(RelocalizerTest, FollowsATurnThatBeganAtTheEndOfTheLastScan) {
 // was turned by 46 degrees where it drove into a gateway, and lost.
 TEST_F(RelocalizerTest, FollowsNoTurnThatEndsElsewhere) {
   const auto turning = [](double s) { return at(0.0, 1.0 * s, 0.6 * s); };
-  const test::ObservedScan scan(test::yard(), turning, 6);
-  const Prior prior = local_.predict(scan.timing());
-  const Solution found = local_.align(scan.features(), prior);
-  const Solution followed =
-      relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
+  const auto [prior, found, followed] = follow_turn(test::yard(), turning);
   EXPECT_EQ(followed.trajectory.knots, found.trajectory.knots);
 }
 
@@ -142,12 +145,8 @@ class OnASlope : public RelocalizerTest {
   void SetUp() override { stand_in(yard_on_slope(0.0)); }
   /// How far follow_turn() turns a scan in which the sensor turns by `sensor_rad`. 0: not at all.
   double turned_rad(const test::Scene& scene, double sensor_rad) {
-    const test::ObservedScan scan(
-        scene, [&](double s) { return at(0.0, 0.0, sensor_rad * s); }, 6);
-    const Prior prior = local_.predict(scan.timing());
-    const Solution found = local_.align(scan.features(), prior);
-    const Solution followed =
-        relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
+    const auto [prior, found, followed] =
+        follow_turn(scene, [&](double s) { return at(0.0, 0.0, sensor_rad * s); });
     return so3_log(found.trajectory.end().rotation.inverse() * followed.trajectory.end().rotation)
         .norm();
   }
@@ -160,12 +159,7 @@ TEST_F(OnASlope, FollowsNoTurnUnderWhichTheGroundDoesNotFit) {
 }
 
 TEST_F(RelocalizerTest, LeavesAnAlignmentThatFitsAlone) {
-  const test::ObservedScan scan(
-      test::yard(), [](double) { return Pose{}; }, 6);
-  const Prior prior = local_.predict(scan.timing());
-  const Solution found = local_.align(scan.features(), prior);
-  const Solution followed =
-      relocalizer_.follow_turn(found, scan.observation(), prior, history_, local_);
+  const auto [prior, found, followed] = follow_turn(test::yard(), [](double) { return Pose{}; });
   EXPECT_EQ(followed.trajectory.knots, found.trajectory.knots);
   EXPECT_TRUE(is_in_place(found, prior, 1.0));
   EXPECT_FALSE(is_in_place(found, prior, 0.5)) << "too little of the structure fits";

@@ -60,6 +60,10 @@ Sessions run_with_gap(const Recording& recording, std::size_t first_missing, std
   return run.out();
 }
 
+Sessions run_whole(const Recording& recording) {
+  return run_with_gap(recording, recording.scans.size(), 0);
+}
+
 // Ten seconds at 8 m/s lead farther than anything in the old map can tell.
 TEST(Gap, OfTenSecondsWhileDrivingBeginsAnotherSessionAtOnce) {
   for (const std::uint64_t seed : {91U, 106U}) {
@@ -117,11 +121,7 @@ TEST(Hills, ThatAreBareAreOneSession) {
   for (const std::uint64_t seed : {21U, 22U, 24U}) {
     SCOPED_TRACE(seed);
     const Recording recording = recording_of("hills", {.speed_mps = 6.0, .duration_s = 20.0}, seed);
-    SessionRun run;
-    for (std::size_t k = 0; k < recording.scans.size(); ++k) {
-      run.see(recording.scans[k], recording.truth[k], false);
-    }
-    const Sessions& o = run.out();
+    const Sessions o = run_whole(recording);
     std::printf("hills %d: %d tracked within %.3f m; %d degraded, %.3f m, %.2f deg\n",
                 static_cast<int>(seed), o.tracked.count, o.tracked.worst_m, o.degraded.count,
                 o.degraded.worst_m, o.degraded.worst_rad / kDeg);
@@ -142,11 +142,7 @@ TEST(Spin, BegunWithinAScanIsFollowed) {
                                                        .standstill_s = 1.5,
                                                        .turn_rate_dps = rate_dps,
                                                        .turn_ramp_s = 0.1});
-      SessionRun run;
-      for (std::size_t k = 0; k < recording.scans.size(); ++k) {
-        run.see(recording.scans[k], recording.truth[k], false);
-      }
-      const Sessions& o = run.out();
+      const Sessions o = run_whole(recording);
       std::printf("%s, %.0f deg/s: %d tracked within %.3f m, %.2f deg; %d degraded, %.2f deg\n",
                   world, rate_dps, o.tracked.count, o.tracked.worst_m, o.tracked.worst_rad / kDeg,
                   o.degraded.count, o.degraded.worst_rad / kDeg);
