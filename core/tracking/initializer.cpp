@@ -90,8 +90,13 @@ void Initializer::add_velocity_prior(const Start& start, Prior& prior) {
 Initializer::Start Initializer::search() {
   const MotionSearch::Result found = search_.find();
   is_unambiguous_ = found.is_unambiguous;
-  return {found.twist, found.twist.linear_mps,
-          found.moves ? search::kSearchedVelocity_mps : tracking::kSameVelocity_mps, found.moves};
+  double sigma_mps = tracking::kSameVelocity_mps;
+  if (found.moves) {
+    sigma_mps = search::kSearchedVelocity_mps;
+  } else if (!is_unambiguous_) {
+    sigma_mps = search::kUnknownVelocity_mps;
+  }
+  return {found.twist, found.twist.linear_mps, sigma_mps, found.moves};
 }
 
 /// Aligns the second scan when the sensor moved by about `start.twist` during both: the first one,

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
+#include <random>
+#include <vector>
 
 namespace lilo::core {
 namespace {
@@ -46,6 +49,27 @@ TEST(MotionSearch, ScansWithoutReturnsTellNothing) {
   MotionSearch search(kMost);
   add_scans(search, test::Scene{}, 0.0, 2);
   EXPECT_FALSE(search.find().is_unambiguous);
+}
+
+// Rough ground without structure: what seems to be some is elsewhere in every scan. Of thousands of
+// motions one lays significantly more of it on each other than rest does.
+TEST(MotionSearch, CellsThatAreSharedByChanceAreNoMotion) {
+  std::mt19937 rng(5);
+  std::uniform_real_distribution<float> place_m(-12.0F, 12.0F), instant(0.0F, 1.0F);
+  MotionSearch search(kMost);
+  for (std::int64_t k = 0; k < 2; ++k) {
+    std::vector<Feature> features(300);
+    for (Feature& f : features) {
+      f = {.x_m = place_m(rng),
+           .y_m = place_m(rng),
+           .s = instant(rng),
+           .kind = FeatureKind::structure};
+    }
+    search.add({.start_ns = k * 100'000'000, .end_ns = (k + 1) * 100'000'000}, features);
+  }
+  const MotionSearch::Result result = search.find();
+  EXPECT_FALSE(result.moves);
+  EXPECT_FALSE(result.is_unambiguous);
 }
 
 // Posts 1.5 m apart: 15 m/s more are one post more in each scan.
