@@ -244,8 +244,8 @@ inline constexpr double kSpeedStep_mps = 1.0, kYawPerSpeed_radpm = 0.2;
 inline constexpr int kSpeeds = 40, kHeadings = 16, kYawRates = 10;
 /// Refinements, each of half the step.
 inline constexpr int kRefinements = 3;
-/// Part of their cells that scans must share under a motion that a vehicle starts with. It is 0.29
-/// to 0.50 under the true one on motorways, 0.10 to 0.36 under a false one on bare hills at rest.
+/// Part of their cells that scans must share under a motion for its velocity to be known. It is
+/// 0.29 to 0.50 under the true one on motorways, 0.10 to 0.36 under a false one on bare hills.
 inline constexpr double kLeastSearchedShare = 0.3;
 /// m/s, 1 sigma of a velocity that was searched; of one that was not found, range 2 to 8.
 inline constexpr double kSearchedVelocity_mps = 1.0, kUnknownVelocity_mps = 4.0;

@@ -144,15 +144,13 @@ MotionSearch::Result MotionSearch::find() {
   const Hypothesis best =
       *std::max_element(hypotheses_.begin(), hypotheses_.end(), has_lower_score);
   Result result{changed({}, best.by)};
-  // Of thousands of motions some lay a few cells on each other by chance.
-  const bool fits_better = is_significant(best.score, stationary, search::kPreferSigmas);
-  result.moves = fits_better && best.score > search::kLeastSearchedShare * most;
   result.is_unambiguous =
-      result.moves == fits_better &&
       std::none_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& other) {
         return differ(changed({}, other.by), result.twist, search::kSameMotion_mps) &&
                !is_significant(best.score, other.score, search::kPreferSigmas);
       });
+  result.moves = is_significant(best.score, stationary, search::kPreferSigmas);
+  result.shares_enough = best.score > search::kLeastSearchedShare * most;
   result.twist = result.moves ? refine(result.twist, Subsample::all) : Twist{};
   return result;
 }

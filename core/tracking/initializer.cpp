@@ -90,11 +90,11 @@ void Initializer::add_velocity_prior(const Start& start, Prior& prior) {
 Initializer::Start Initializer::search() {
   const MotionSearch::Result found = search_.find();
   is_unambiguous_ = found.is_unambiguous;
-  double sigma_mps = tracking::kSameVelocity_mps;
-  if (found.moves) {
+  double sigma_mps = search::kUnknownVelocity_mps;
+  if (found.moves && found.shares_enough) {
     sigma_mps = search::kSearchedVelocity_mps;
-  } else if (!is_unambiguous_) {
-    sigma_mps = search::kUnknownVelocity_mps;
+  } else if (!found.moves && is_unambiguous_) {
+    sigma_mps = tracking::kSameVelocity_mps;
   }
   return {found.twist, found.twist.linear_mps, sigma_mps, found.moves};
 }
