@@ -27,8 +27,8 @@ class MotionSearch {
     Twist twist;
     bool moves = false;
     bool is_unambiguous = true;
-    /// Whether the scans have a large part of their cells in common under it. Of thousands of
-    /// motions one lays some cells on each other by chance.
+    /// Only where it moves: whether the scans have a large part of their cells in common under the
+    /// best hypothesis. Of thousands of motions one lays some on each other by chance.
     bool shares_enough = false;
   };
   /// Where a scan begins and ends by a track.
