@@ -121,10 +121,9 @@ namespace lilo::core::motion {
 /// Metres: where both share a bound, a rotation counts as the way of what is so far away.
 inline constexpr double kLever_m = 10.0;
 
-/// m/s^2, 20 g, and rad/s^2: no carrier changes its velocity or rate of turn so fast over a scan.
-/// Ranges: 100 to 500; 70 to 100. With 50 m/s^2 the right solution after a wrong one was refused.
-inline constexpr double kImpossibleAcceleration_mps2 = 200.0,
-                        kImpossibleAcceleration_radps2 = 100.0;
+/// m/s^2, 20 g: no carrier of a sensor changes its velocity so fast over a scan. Range: 100 to 500.
+/// With 50 the right solution after a wrong one was refused, and the sensor was lost.
+inline constexpr double kImpossibleAcceleration_mps2 = 200.0;
 
 /// Segments of a trajectory at most.
 inline constexpr int kMaxSegments = 4;
@@ -244,8 +243,9 @@ inline constexpr double kSpeedStep_mps = 1.0, kYawPerSpeed_radpm = 0.2;
 inline constexpr int kSpeeds = 40, kHeadings = 16, kYawRates = 10;
 /// Refinements, each of half the step.
 inline constexpr int kRefinements = 3;
-/// Part of the cells that scans could share, and must for the velocity to be known. It is 0.29 to
-/// 0.50 under the true motion on motorways, 0.16 to 0.35 in a field; 0.10 to 0.36 by chance.
+/// A searched velocity is doubtful where scans share less than this part of the cells that they
+/// could. Under the true motion it is 0.29 to 0.50 on motorways, 0.16 to 0.35 in a field; under a
+/// false one 0.10 to 0.36 on bare hills.
 inline constexpr double kLeastSearchedShare = 0.3;
 /// m/s, 1 sigma of a velocity that was searched; of a doubtful one. Range: 2 to 8.
 inline constexpr double kSearchedVelocity_mps = 1.0, kUnknownVelocity_mps = 4.0;

@@ -36,13 +36,6 @@ Prior predict(const MotionState& state, const ScanTiming& scan, const Vector6d& 
 
 Pose predicted_end(const Prior& prior) { return moved(prior.T_begin, prior.twist, prior.span_s); }
 
-bool is_possible_change(const Twist& from, const Twist& to, double time_s) {
-  return (to.linear_mps - from.linear_mps).norm() <=
-             motion::kImpossibleAcceleration_mps2 * time_s &&
-         (to.angular_radps - from.angular_radps).norm() <=
-             motion::kImpossibleAcceleration_radps2 * time_s;
-}
-
 MotionState predicted_state(const Prior& prior, std::int64_t end_ns) {
   return {predicted_end(prior), prior.twist,
           propagated(prior.begin_information, prior.acceleration_density, prior.span_s), end_ns};

@@ -28,9 +28,6 @@ Prior predict(const MotionState& state, const ScanTiming& scan, const Vector6d& 
 
 /// The predicted pose of the last firing.
 Pose predicted_end(const Prior& prior);
-/// Whether a carrier of a sensor can change its twist so within `time_s`
-/// (motion::kImpossibleAcceleration_mps2, motion::kImpossibleAcceleration_radps2).
-bool is_possible_change(const Twist& from, const Twist& to, double time_s);
 /// The predicted state after the scan.
 MotionState predicted_state(const Prior& prior, std::int64_t end_ns);
 

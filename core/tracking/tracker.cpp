@@ -20,12 +20,13 @@ Eigen::Vector2d least_known_axis(const Solution& solution) {
   return by_information.eigenvectors().col(0);
 }
 
-/// Whether the sensor can have the twist at the end of the solution. Where a scan is all but
-/// covered, what is left may match at any height, and on bare hills a scan of little structure may
-/// match under any turn. The next predictions would fly off.
+/// Whether the sensor can have the velocity at the end of the solution. Where a scan is all but
+/// covered, what is left may match at any height, and the next predictions would fly off.
 /// `unseen_s`: AlignmentHistory::unseen_s().
-bool has_possible_twist(const Solution& solution, const Prior& prior, double unseen_s) {
-  return is_possible_change(prior.twist, solution.trajectory.end_twist(), unseen_s + prior.span_s);
+bool has_possible_velocity(const Solution& solution, const Prior& prior, double unseen_s) {
+  const Twist end = solution.trajectory.end_twist();
+  return (end.linear_mps - prior.twist.linear_mps).norm() <=
+         motion::kImpossibleAcceleration_mps2 * (unseen_s + prior.span_s);
 }
 
 /// Whether an alignment found too little of the scan in the map. `fit`: StructureFit::relative().
@@ -161,7 +162,8 @@ std::optional<Solution> Tracker::solve(const Prior& predicted) {
   const Solution found = align_from_prediction(predicted);
   if (phase_ == Phase::starting) return found;
   const Solution turned = relocalizer_.follow_turn(found, scan_, predicted, history_, local_);
-  const bool is_possible = has_possible_twist(turned, predicted, history_.unseen_s(scan_.timing));
+  const bool is_possible =
+      has_possible_velocity(turned, predicted, history_.unseen_s(scan_.timing));
   return is_possible ? turned : local_.unaligned(predicted);
 }
 
@@ -182,7 +184,7 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
       relocalizer_.find(scan_, prior, at_prediction, history_, local_);
   const bool is_found =
       found && !matches_too_little(*found, history_.fit.relative(*found, scan_.structure)) &&
-      has_possible_twist(*found, prior, unseen_s) && (is_searchable || is_predicted(*found));
+      has_possible_velocity(*found, prior, unseen_s) && (is_searchable || is_predicted(*found));
   return is_found ? *found : local_.unaligned(prior);
 }
 

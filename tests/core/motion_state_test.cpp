@@ -110,19 +110,5 @@ TEST(ObserveVelocity, IsTheUpdateOfAKalmanFilter) {
   EXPECT_LT((prior.begin_information.inverse() - P).norm(), 1e-9);
 }
 
-TEST(IsPossibleChange, BrakesAndTurnsOfVehiclesAreAndRunawaySolutionsAreNot) {
-  const Twist driving{{10.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-  const Twist stopped{};
-  const Twist turning{{10.0, 0.0, 0.0}, {0.0, 0.0, 6.28}};  // 360 deg/s, begun within a scan
-  const Twist spinning{{10.0, 0.0, 0.0}, {0.0, 0.0, 22.0}};
-  const Twist flying{{10.0, 0.0, 25.0}, {0.0, 0.0, 0.0}};
-  EXPECT_TRUE(is_possible_change(driving, stopped, 0.1));
-  EXPECT_TRUE(is_possible_change(driving, turning, 0.1));
-  EXPECT_TRUE(is_possible_change(turning, driving, 0.1));
-  EXPECT_FALSE(is_possible_change(driving, spinning, 0.1));
-  EXPECT_FALSE(is_possible_change(driving, flying, 0.1));
-  EXPECT_TRUE(is_possible_change(driving, spinning, 0.3));
-}
-
 }  // namespace
 }  // namespace lilo::core
