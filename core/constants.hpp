@@ -120,11 +120,9 @@ namespace lilo::core::motion {
 
 /// Metres: where both share a bound, a rotation counts as the way of what is so far away.
 inline constexpr double kLever_m = 10.0;
-
 /// m/s^2, 20 g: no carrier of a sensor changes its velocity so fast over a scan. Range: 100 to 500.
 /// With 50 the right solution after a wrong one was refused, and the sensor was lost.
 inline constexpr double kImpossibleAcceleration_mps2 = 200.0;
-
 /// Segments of a trajectory at most.
 inline constexpr int kMaxSegments = 4;
 /// Radians, 1 sigma of the motion between two knots, which gives the number of segments: 2 cm at
@@ -132,7 +130,6 @@ inline constexpr int kMaxSegments = 4;
 inline constexpr double kKnotMotion_rad = 1e-3;
 /// Instants of a scan at which its trajectory is sampled for the points.
 inline constexpr int kTrajectoryInstants = 128;
-
 /// Seconds: span of a scan whose stamps tell none, that of 600 revolutions a minute.
 inline constexpr double kNominalSpan_s = 0.1;
 /// Nanoseconds from one scan to the next within which no firing is missing.
@@ -254,6 +251,8 @@ inline constexpr double kSameMotion_mps = 3.0;
 
 /// m/s: how far off the motions are that are tested against the one tracked.
 inline constexpr std::array<double, 4> kFalseMotions_mps{1.0, 2.0, 3.0, 4.0};
+/// Speeds of MotionSearch along the axis are tested as well, one of so many with each scan.
+inline constexpr int kSpeedParts = 8;
 /// Scans in a row for which another motion must be better.
 inline constexpr int kRefutingScans = 2;
 /// One of so many scans is laid over the others where two motions may fit: six span 1.5 s at 10 Hz.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace lilo::core {
 
@@ -19,6 +20,7 @@ void MotionCheck::clear() {
   spaced_scans_.clear();
   scan_count_ = 0;
   times_refuted_ = 0;
+  suspected_mps_.reset();
   ambiguity_ = 0.0;
   count_ambiguous_scans();
 }
@@ -57,13 +59,37 @@ int MotionCheck::least_occupied(const Eigen::Vector2d& axis, Subsample subsample
   return least;
 }
 
+/// Looks for a speed along the axis under which fewer cells are occupied than `of_quarter`. Tries
+/// one of kSpeedParts of all speeds, and the one found last.
+void MotionCheck::suspect_speed(const Eigen::Vector2d& axis, int of_quarter) {
+  const std::optional<Eigen::Vector2d> last_mps = std::exchange(suspected_mps_, std::nullopt);
+  int least = of_quarter;
+  const auto try_speed = [&](double speed_mps) {
+    const int cells = scans_.occupied_at(speed_mps, axis, Subsample::quarter, grid_, least);
+    if (cells == least) return;
+    least = cells;
+    suspected_mps_ = speed_mps * axis;
+  };
+  if (last_mps) try_speed(last_mps->dot(axis));
+  const int first = scan_count_ % search::kSpeedParts - search::kSpeeds;
+  for (int step = first; step <= search::kSpeeds; step += search::kSpeedParts) {
+    try_speed(step * search::kSpeedStep_mps);
+  }
+}
+
 bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
   // A motion that is clearly better with all points is mostly better with a quarter of them too.
   const Eigen::Vector2d as_tracked = Eigen::Vector2d::Zero();
   const int of_quarter = scans_.occupied_under(as_tracked, Subsample::quarter, grid_);
-  if (least_occupied(axis, Subsample::quarter, of_quarter) == of_quarter) return false;
+  suspect_speed(axis, of_quarter);
+  if (!suspected_mps_ && least_occupied(axis, Subsample::quarter, of_quarter) == of_quarter) {
+    return false;
+  }
   const int tracked = scans_.occupied_under(as_tracked, Subsample::all, grid_);
-  const int least = least_occupied(axis, Subsample::all, tracked);
+  int least = least_occupied(axis, Subsample::all, tracked);
+  if (suspected_mps_) {
+    least = scans_.occupied_at(suspected_mps_->dot(axis), axis, Subsample::all, grid_, least);
+  }
   const int alone = scans_.occupied_alone(grid_);
   // The true motion lays much of the scans on each other. On bare hills a false one lays some:
   // rings meet steep ground at the same ranges from scan to scan, as though it moved with the

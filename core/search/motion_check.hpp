@@ -4,6 +4,7 @@
 #include "core/search/tracked_scans.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace lilo::core {
@@ -16,6 +17,9 @@ namespace lilo::core {
 /// truck fits, and the posts count as moving. But if the scans of the last half second are laid
 /// over each other as they were tracked, everything that is fixed leaves a trail, and the scans
 /// share more cells under another motion along the road.
+///
+/// Far from the true motion nothing fits, and the track may stagger by metres from scan to scan. So
+/// constant speeds along the road are tested too, each with one scan of search::kSpeedParts.
 ///
 /// Between two lanes that move together it is not known which of two motions is the true one. The
 /// number of occupied cells over the speed along the road then has a second minimum beside that of
@@ -53,17 +57,19 @@ class MotionCheck {
     return (scan_count_ - 1) % search::kAmbiguityStride == 0;
   }
   int least_occupied(const Eigen::Vector2d& axis, Subsample subsample, int limit);
+  void suspect_speed(const Eigen::Vector2d& axis, int of_quarter);
   bool is_clearly_better(const Eigen::Vector2d& axis);
   double depth_of_second_minimum(const Eigen::Vector2d& axis);
 
-  TrackedScans scans_, spaced_scans_;  // every scan; one of kAmbiguityStride
-  int scan_count_ = 0;                 // since clear()
-  int times_refuted_ = 0;              // on end
-  double ambiguity_ = 0.0;             // sigmas
-  int ambiguous_scans_ = 0;            // in a row
-  int dead_reckoned_scans_ = 0;        // of these
-  bool ambiguity_ended_ = false;       // with the newest
-  StructurePoints structure_;          // of the newest
+  TrackedScans scans_, spaced_scans_;             // every scan; one of kAmbiguityStride
+  int scan_count_ = 0;                            // since clear()
+  int times_refuted_ = 0;                         // on end
+  std::optional<Eigen::Vector2d> suspected_mps_;  // a velocity along the axis that may fit better
+  double ambiguity_ = 0.0;                        // sigmas
+  int ambiguous_scans_ = 0;                       // in a row
+  int dead_reckoned_scans_ = 0;                   // of these
+  bool ambiguity_ended_ = false;                  // with the newest
+  StructurePoints structure_;                     // of the newest
   TopDownGrid grid_;
 };
 

@@ -42,6 +42,23 @@ int TrackedScans::occupied_under(const Eigen::Vector2d& faster_mps, Subsample su
   return grid.occupied();
 }
 
+int TrackedScans::occupied_at(double speed_mps, const Eigen::Vector2d& along, Subsample subsample,
+                              TopDownGrid& grid, int limit) const {
+  const TrackedScan& newest = scans_[newest_];
+  const Eigen::Vector2d across(-along.y(), along.x());
+  const auto place_m = [&](const Eigen::Vector2d& tracked_m, double ago_s) {
+    return across.dot(tracked_m - newest.end_m) * across - ago_s * speed_mps * along;
+  };
+  grid.clear();
+  for (const TrackedScan& scan : scans_) {
+    const double ago_s = seconds_between(scan.end_ns, newest.end_ns);
+    grid.add(scan.points, place_m(scan.begin_m, ago_s + scan.span_s), place_m(scan.end_m, ago_s),
+             subsample);
+    if (grid.occupied() >= limit) return limit;
+  }
+  return grid.occupied();
+}
+
 int TrackedScans::occupied_alone(TopDownGrid& grid) const {
   int occupied = 0;
   for (const TrackedScan& scan : scans_) {

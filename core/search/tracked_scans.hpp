@@ -39,6 +39,9 @@ class TrackedScans {
   /// is_full().
   int occupied_under(const Eigen::Vector2d& faster_mps, Subsample subsample, TopDownGrid& grid,
                      int limit = std::numeric_limits<int>::max()) const;
+  /// The same, as though it had kept one speed along a unit vector. Across it moved as tracked.
+  int occupied_at(double speed_mps, const Eigen::Vector2d& along, Subsample subsample,
+                  TopDownGrid& grid, int limit = std::numeric_limits<int>::max()) const;
   /// The sum of the cells that each scan occupies alone.
   int occupied_alone(TopDownGrid& grid) const;
 

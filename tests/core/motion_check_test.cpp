@@ -80,6 +80,22 @@ TEST(MotionCheck, FollowingTheTruckIsRefutedWithinASecond) {
   EXPECT_LE(scans_until_refuted(true, 0.0, {0.0, 1.0}), 10) << "the axis may be either";
 }
 
+// The track staggers, 21 m/s too fast on average, so that no constant change of it fits. The sign
+// of the axis means nothing.
+TEST(MotionCheck, ATrackThatIsFarTooFastIsRefutedWithinThreeSeconds) {
+  Road road(true);
+  MotionCheck check(2000);
+  Pose end;
+  int refuted_at = 100;
+  for (int k = 1; k < refuted_at; ++k) {
+    const Pose begin = end;
+    end.translation_m.x() += kSpan_s * (23.0 + 8.0 * std::sin(2.0 * k));
+    check.add(road.scan(kSpan_s * k), begin, end, timing(1e9 * kSpan_s * k));
+    if (check.compare({k % 2 == 0 ? 1.0 : -1.0, 0.0})) refuted_at = k;
+  }
+  EXPECT_LE(refuted_at, 30);
+}
+
 TEST(MotionCheck, WhereNothingTellsNothingIsRefuted) {
   EXPECT_EQ(scans_until_refuted(false, 0.0, {1.0, 0.0}), 100);
 }

@@ -37,11 +37,9 @@ std::vector<Feature> posts_seen(double speed_mps, double begin_s) {
   return features;
 }
 
-/// Cells that all scans occupy under `faster_mps`.
-int occupied(double true_mps, double tracked_mps, const Eigen::Vector2d& faster_mps,
-             int limit = kNoLimit) {
+/// Scans of a sensor that drives at `true_mps`, tracked at `tracked_mps`.
+TrackedScans scans_of(double true_mps, double tracked_mps) {
   TrackedScans scans(kPosts);
-  TopDownGrid grid(kPosts);
   StructurePoints structure;
   for (int k = 0; k < kScans; ++k) {
     const double begin_s = kScan_s * k, end_s = begin_s + kScan_s;
@@ -49,7 +47,33 @@ int occupied(double true_mps, double tracked_mps, const Eigen::Vector2d& faster_
     scans.add(structure, at(tracked_mps * begin_s), at(tracked_mps * end_s),
               {std::llround(1e9 * begin_s), std::llround(1e9 * end_s)});
   }
-  return scans.occupied_under(faster_mps, Subsample::all, grid, limit);
+  return scans;
+}
+
+/// Cells that all scans occupy under `faster_mps`.
+int occupied(double true_mps, double tracked_mps, const Eigen::Vector2d& faster_mps,
+             int limit = kNoLimit) {
+  TopDownGrid grid(kPosts);
+  return scans_of(true_mps, tracked_mps).occupied_under(faster_mps, Subsample::all, grid, limit);
+}
+
+TEST(TrackedScans, AtTheTrueSpeedEveryScanSeesTheSameCellsHoweverItWasTracked) {
+  TopDownGrid grid(kPosts);
+  for (const double tracked_mps : {0.0, kSpeed_mps, -3.0 * kSpeed_mps}) {
+    const TrackedScans scans = scans_of(kSpeed_mps, tracked_mps);
+    EXPECT_EQ(scans.occupied_at(kSpeed_mps, {1.0, 0.0}, Subsample::all, grid), kPosts);
+    EXPECT_EQ(scans.occupied_at(-kSpeed_mps, {-1.0, 0.0}, Subsample::all, grid), kPosts);
+    EXPECT_GT(scans.occupied_at(0.0, {1.0, 0.0}, Subsample::all, grid), kPosts);
+    EXPECT_EQ(scans.occupied_at(0.0, {1.0, 0.0}, Subsample::all, grid, kPosts), kPosts);
+  }
+}
+
+// Across the axis a scan stays where it was tracked.
+TEST(TrackedScans, AlongAnotherAxisTheMotionIsThatTracked) {
+  TopDownGrid grid(kPosts);
+  EXPECT_EQ(scans_of(kSpeed_mps, kSpeed_mps).occupied_at(0.0, {0.0, 1.0}, Subsample::all, grid),
+            kPosts);
+  EXPECT_GT(scans_of(kSpeed_mps, 0.0).occupied_at(0.0, {0.0, 1.0}, Subsample::all, grid), kPosts);
 }
 
 TEST(TrackedScans, UnderTheTrueMotionEveryScanSeesTheSameCells) {
