@@ -160,6 +160,8 @@ inline constexpr double kNoiseSmoothing = 0.1;
 /// middles of two. Rotation (range: 8 to 16; with 32 one of 16 drives through rooms was lost) and
 /// translation (range: 1 to 8).
 inline constexpr double kFasterRotation = 16.0, kFasterTranslation = 8.0;
+/// A change of the translation counts as this many times the usual one at most. Range: 5 to 10.
+inline constexpr double kMostTranslation = 8.0;
 /// Changes of the motion, after a map was begun, that tell how uncertain its first scan is. Range:
 /// 5 to 20, by NEES.
 inline constexpr int kStartChanges = 5;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -82,6 +83,18 @@ TEST(ProcessNoise, RemembersTheFirstFiveChangesOfTheMotion) {
     noise.begin_map();
     EXPECT_EQ(noise.density_at_start(), Vector6d::Zero());
   }
+}
+
+// The last two scans slip back along the road, so that the velocity changes by 5 m/s twice. Each
+// change counts as eight times the usual one, with a weight of a tenth.
+TEST(ProcessNoise, ASlipLeavesTheNextScansLittleFreedom) {
+  ProcessNoise noise(nominal());
+  density_after(noise, [](double t_s) {
+    const double slipped_m = std::clamp(10.0 * (t_s - 29.75), 0.0, 2.0);
+    return Pose{so3_exp(Eigen::Vector3d::Zero()), {20.0 * t_s - slipped_m, 0.0, 0.0}};
+  });
+  EXPECT_NEAR(noise.density()[3], 3.0 * 1.7 * 1.7, 1e-9);
+  EXPECT_EQ(noise.density()[5], 3.0);
 }
 
 TEST(ProcessNoise, CalmsDownWithTheMotion) {
