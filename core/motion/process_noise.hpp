@@ -15,7 +15,9 @@ namespace lilo::core {
 /// hold the end of a scan, and the same errors mislead the beginning of the next scan, which looks
 /// the same way. So the motion within a scan gets as much freedom as the motion from scan to scan
 /// shows, times a factor (motion::kFasterRotation), since shaking that is faster than the scans
-/// cancels in part: little on a smooth road, much on a shaking mast.
+/// cancels in part: little on a smooth road, much on a shaking mast. A change of the translation
+/// counts as motion::kMostTranslation times the usual one at most, since it may be an alignment
+/// that slipped.
 ///
 /// Not thread-safe; no allocation.
 class ProcessNoise {
