@@ -4,6 +4,30 @@
 #include <algorithm>
 
 namespace lilo::core {
+namespace {
+
+/// Adds a scan. `place_m(tracked_m, ago_s)`: where the sensor was that long before `now_ns`.
+template <typename PlaceAt>
+void lay(const TrackedScan& scan, std::int64_t now_ns, const PlaceAt& place_m, Subsample subsample,
+         TopDownGrid& grid) {
+  const double ago_s = seconds_between(scan.end_ns, now_ns);
+  grid.add(scan.points, place_m(scan.begin_m, ago_s + scan.span_s), place_m(scan.end_m, ago_s),
+           subsample);
+}
+
+/// Cells that all scans occupy together; `limit` if they are as many or more.
+template <typename Scans, typename PlaceAt>
+int occupied_together(const Scans& scans, std::int64_t now_ns, const PlaceAt& place_m,
+                      Subsample subsample, TopDownGrid& grid, int limit) {
+  grid.clear();
+  for (const TrackedScan& scan : scans) {
+    lay(scan, now_ns, place_m, subsample, grid);
+    if (grid.occupied() >= limit) return limit;
+  }
+  return grid.occupied();
+}
+
+}  // namespace
 
 TrackedScans::TrackedScans(std::size_t most_features) {
   for (TrackedScan& scan : scans_) scan.points.reserve(most_features);
@@ -23,23 +47,13 @@ void TrackedScans::add(const StructurePoints& structure, const Pose& T_begin, co
   scan.end_ns = timing.end_ns;
 }
 
-/// From the end of the newest scan.
-void TrackedScans::lay(const TrackedScan& scan, const Eigen::Vector2d& faster_mps,
-                       Subsample subsample, TopDownGrid& grid) const {
-  const TrackedScan& newest = scans_[newest_];
-  const double ago_s = seconds_between(scan.end_ns, newest.end_ns);
-  grid.add(scan.points, scan.begin_m - newest.end_m - (ago_s + scan.span_s) * faster_mps,
-           scan.end_m - newest.end_m - ago_s * faster_mps, subsample);
-}
-
 int TrackedScans::occupied_under(const Eigen::Vector2d& faster_mps, Subsample subsample,
                                  TopDownGrid& grid, int limit) const {
-  grid.clear();
-  for (const TrackedScan& scan : scans_) {
-    lay(scan, faster_mps, subsample, grid);
-    if (grid.occupied() >= limit) return limit;
-  }
-  return grid.occupied();
+  const TrackedScan& newest = scans_[newest_];
+  const auto place_m = [&](const Eigen::Vector2d& tracked_m, double ago_s) {
+    return Eigen::Vector2d(tracked_m - newest.end_m - ago_s * faster_mps);
+  };
+  return occupied_together(scans_, newest.end_ns, place_m, subsample, grid, limit);
 }
 
 int TrackedScans::occupied_at(double speed_mps, const Eigen::Vector2d& along, Subsample subsample,
@@ -47,23 +61,21 @@ int TrackedScans::occupied_at(double speed_mps, const Eigen::Vector2d& along, Su
   const TrackedScan& newest = scans_[newest_];
   const Eigen::Vector2d across(-along.y(), along.x());
   const auto place_m = [&](const Eigen::Vector2d& tracked_m, double ago_s) {
-    return across.dot(tracked_m - newest.end_m) * across - ago_s * speed_mps * along;
+    return Eigen::Vector2d(across.dot(tracked_m - newest.end_m) * across -
+                           ago_s * speed_mps * along);
   };
-  grid.clear();
-  for (const TrackedScan& scan : scans_) {
-    const double ago_s = seconds_between(scan.end_ns, newest.end_ns);
-    grid.add(scan.points, place_m(scan.begin_m, ago_s + scan.span_s), place_m(scan.end_m, ago_s),
-             subsample);
-    if (grid.occupied() >= limit) return limit;
-  }
-  return grid.occupied();
+  return occupied_together(scans_, newest.end_ns, place_m, subsample, grid, limit);
 }
 
 int TrackedScans::occupied_alone(TopDownGrid& grid) const {
+  const TrackedScan& newest = scans_[newest_];
+  const auto as_tracked_m = [&](const Eigen::Vector2d& tracked_m, double) {
+    return Eigen::Vector2d(tracked_m - newest.end_m);
+  };
   int occupied = 0;
   for (const TrackedScan& scan : scans_) {
     grid.clear();
-    lay(scan, Eigen::Vector2d::Zero(), Subsample::all, grid);
+    lay(scan, newest.end_ns, as_tracked_m, Subsample::all, grid);
     occupied += grid.occupied();
   }
   return occupied;

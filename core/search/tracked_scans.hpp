@@ -39,16 +39,14 @@ class TrackedScans {
   /// is_full().
   int occupied_under(const Eigen::Vector2d& faster_mps, Subsample subsample, TopDownGrid& grid,
                      int limit = std::numeric_limits<int>::max()) const;
-  /// The same, as though it had kept one speed along a unit vector. Across it moved as tracked.
+  /// The same, as though the sensor had moved at a constant `speed_mps` along the unit vector
+  /// `along`, and as tracked across it.
   int occupied_at(double speed_mps, const Eigen::Vector2d& along, Subsample subsample,
                   TopDownGrid& grid, int limit = std::numeric_limits<int>::max()) const;
   /// The sum of the cells that each scan occupies alone.
   int occupied_alone(TopDownGrid& grid) const;
 
  private:
-  void lay(const TrackedScan& scan, const Eigen::Vector2d& faster_mps, Subsample subsample,
-           TopDownGrid& grid) const;
-
   std::array<TrackedScan, search::kMotionScans> scans_;
   std::size_t count_ = 0, newest_ = 0;
 };

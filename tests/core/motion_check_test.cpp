@@ -80,9 +80,10 @@ TEST(MotionCheck, FollowingTheTruckIsRefutedWithinASecond) {
   EXPECT_LE(scans_until_refuted(true, 0.0, {0.0, 1.0}), 10) << "the axis may be either";
 }
 
-// The track staggers, 21 m/s too fast on average, so that no constant change of it fits. The sign
-// of the axis means nothing.
-TEST(MotionCheck, ATrackThatIsFarTooFastIsRefutedWithinThreeSeconds) {
+// The track is 21 m/s too fast on average and jumps from scan to scan, so that no constant change
+// of it fits. The sign of the axis means nothing. Six scans are needed, eight test all speeds, and
+// one confirms.
+TEST(MotionCheck, ATrackThatIsFarTooFastIsRefutedWithinFifteenScans) {
   Road road(true);
   MotionCheck check(2000);
   Pose end;
@@ -93,7 +94,7 @@ TEST(MotionCheck, ATrackThatIsFarTooFastIsRefutedWithinThreeSeconds) {
     check.add(road.scan(kSpan_s * k), begin, end, timing(1e9 * kSpan_s * k));
     if (check.compare({k % 2 == 0 ? 1.0 : -1.0, 0.0})) refuted_at = k;
   }
-  EXPECT_LE(refuted_at, 30);
+  EXPECT_LE(refuted_at, 15);
 }
 
 TEST(MotionCheck, WhereNothingTellsNothingIsRefuted) {

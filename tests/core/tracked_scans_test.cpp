@@ -68,9 +68,12 @@ TEST(TrackedScans, AtTheTrueSpeedEveryScanSeesTheSameCellsHoweverItWasTracked) {
   }
 }
 
-// Across the axis a scan stays where it was tracked.
-TEST(TrackedScans, AlongAnotherAxisTheMotionIsThatTracked) {
+TEST(TrackedScans, AcrossTheAxisTheMotionIsThatTracked) {
   TopDownGrid grid(kPosts);
+  const Eigen::Vector2d oblique(0.6, 0.8);
+  EXPECT_EQ(
+      scans_of(kSpeed_mps, kSpeed_mps).occupied_at(0.6 * kSpeed_mps, oblique, Subsample::all, grid),
+      kPosts);
   EXPECT_EQ(scans_of(kSpeed_mps, kSpeed_mps).occupied_at(0.0, {0.0, 1.0}, Subsample::all, grid),
             kPosts);
   EXPECT_GT(scans_of(kSpeed_mps, 0.0).occupied_at(0.0, {0.0, 1.0}, Subsample::all, grid), kPosts);
