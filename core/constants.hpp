@@ -120,9 +120,11 @@ namespace lilo::core::motion {
 
 /// Metres: where both share a bound, a rotation counts as the way of what is so far away.
 inline constexpr double kLever_m = 10.0;
+
 /// m/s^2, 20 g: no carrier of a sensor changes its velocity so fast over a scan. Range: 100 to 500.
 /// With 50 the right solution after a wrong one was refused, and the sensor was lost.
 inline constexpr double kImpossibleAcceleration_mps2 = 200.0;
+
 /// Segments of a trajectory at most.
 inline constexpr int kMaxSegments = 4;
 /// Radians, 1 sigma of the motion between two knots, which gives the number of segments: 2 cm at
@@ -130,12 +132,12 @@ inline constexpr int kMaxSegments = 4;
 inline constexpr double kKnotMotion_rad = 1e-3;
 /// Instants of a scan at which its trajectory is sampled for the points.
 inline constexpr int kTrajectoryInstants = 128;
+
 /// Seconds: span of a scan whose stamps tell none, that of 600 revolutions a minute.
 inline constexpr double kNominalSpan_s = 0.1;
 /// Nanoseconds from one scan to the next within which no firing is missing.
 inline constexpr std::int64_t kNextFiring_ns = 1'000'000;
-/// Seconds: gaps below this, from one firing to the next, change no information. Range: 5e-6 to
-/// 2e-5.
+/// Seconds: shorter gaps between two firings change no information. Range: 5e-6 to 2e-5.
 inline constexpr double kLeastGap_s = 1e-5;
 /// Seconds: over such a gap a prediction is good to half a cell, so that an alignment which begins
 /// there finds the sensor.
@@ -153,17 +155,16 @@ inline constexpr double kClimb_mps = 0.5;
 /// rad/s, the same of the rates: yaw; roll and pitch.
 inline constexpr double kInitialYaw_radps = 0.5, kInitialTilt_radps = 0.1;
 
-/// Weight of the newest scan in the estimate of the process noise: about a second. Range: 0.1 to
-/// 0.3.
+/// Weight of the newest scan in the process noise: about a second. Range: 0.1 to 0.3.
 inline constexpr double kNoiseSmoothing = 0.1;
 /// Factors of that estimate: what shakes faster than the scans come cancels in part between the
 /// middles of two. Rotation (range: 8 to 16; with 32 one of 16 drives through rooms was lost) and
 /// translation (range: 1 to 8).
 inline constexpr double kFasterRotation = 16.0, kFasterTranslation = 8.0;
-/// A change of the translation counts as this many times the usual one at most. Range: 5 to 10.
+/// What one change of the velocity shows of the translation's density counts as so many times the
+/// estimate at most. Less leaves more scans under vibration `degraded`; more lets motorways slip.
 inline constexpr double kMostTranslation = 8.0;
-/// Changes of the motion, after a map was begun, that tell how uncertain its first scan is. Range:
-/// 5 to 20, by NEES.
+/// Changes of the motion that tell how uncertain a first scan is. Range: 5 to 20, by NEES.
 inline constexpr int kStartChanges = 5;
 /// Seconds: shorter intervals between scans tell no process noise.
 inline constexpr double kLeastInterval_s = 0.01;
@@ -242,9 +243,8 @@ inline constexpr double kSpeedStep_mps = 1.0, kYawPerSpeed_radpm = 0.2;
 inline constexpr int kSpeeds = 40, kHeadings = 16, kYawRates = 10;
 /// Refinements, each of half the step.
 inline constexpr int kRefinements = 3;
-/// A searched velocity is doubtful where scans share less than this part of the cells that they
-/// could. Under the true motion it is 0.29 to 0.50 on motorways, 0.16 to 0.35 in a field; under a
-/// false one 0.10 to 0.36 on bare hills.
+/// Part of the cells that scans could share, below which a searched velocity is doubtful. Under the
+/// true motion 0.29 to 0.50 on motorways, 0.16 to 0.35 in a field; on hills 0.10 to 0.36 by chance.
 inline constexpr double kLeastSearchedShare = 0.3;
 /// m/s, 1 sigma of a velocity that was searched; of a doubtful one. Range: 2 to 8.
 inline constexpr double kSearchedVelocity_mps = 1.0, kUnknownVelocity_mps = 4.0;
@@ -253,7 +253,7 @@ inline constexpr double kSameMotion_mps = 3.0;
 
 /// m/s: how far off the motions are that are tested against the one tracked.
 inline constexpr std::array<double, 4> kFalseMotions_mps{1.0, 2.0, 3.0, 4.0};
-/// Speeds of MotionSearch along the axis are tested as well, one of so many with each scan.
+/// Scans in which all speeds of MotionSearch, forwards and backwards, have been tested as well.
 inline constexpr int kSpeedParts = 8;
 /// Scans in a row for which another motion must be better.
 inline constexpr int kRefutingScans = 2;

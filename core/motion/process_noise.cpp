@@ -40,8 +40,7 @@ void ProcessNoise::learn(const Vector6d& density) {
   Vector6d newest = density;
   newest.head<3>() *= motion::kFasterRotation;
   newest.tail<3>() *= motion::kFasterTranslation;
-  // An alignment that slips along a road would give the next ones the freedom to slip farther. By
-  // chance hardly any change is so large.
+  // By chance hardly any change is so large.
   newest.tail<3>() = newest.tail<3>().cwiseMin(motion::kMostTranslation * density_.tail<3>());
   density_ += motion::kNoiseSmoothing * (newest - density_);
   density_ = density_.cwiseMax(nominal_);

@@ -15,9 +15,9 @@ namespace lilo::core {
 /// hold the end of a scan, and the same errors mislead the beginning of the next scan, which looks
 /// the same way. So the motion within a scan gets as much freedom as the motion from scan to scan
 /// shows, times a factor (motion::kFasterRotation), since shaking that is faster than the scans
-/// cancels in part: little on a smooth road, much on a shaking mast. A change of the translation
-/// counts as motion::kMostTranslation times the usual one at most, since it may be an alignment
-/// that slipped.
+/// cancels in part: little on a smooth road, much on a shaking mast. What one change of the
+/// velocity shows of the translation is limited (motion::kMostTranslation): an alignment that
+/// slipped would give the next ones the freedom to slip farther.
 ///
 /// Not thread-safe; no allocation.
 class ProcessNoise {
@@ -41,8 +41,8 @@ class ProcessNoise {
 
   [[nodiscard]] const Vector6d& density() const { return density_; }
   /// The mean of what was observed of the first motion::kStartChanges changes of the motion since
-  /// the map was begun: with no least value, and without the factor for what is faster than the
-  /// scans. Zero before the first.
+  /// the map was begun: with no least value, no limit, and without the factor for what is faster
+  /// than the scans. Zero before the first.
   [[nodiscard]] const Vector6d& density_at_start() const { return at_start_; }
 
  private:

@@ -59,8 +59,8 @@ int MotionCheck::least_occupied(const Eigen::Vector2d& axis, Subsample subsample
   return least;
 }
 
-/// Looks for a speed along the axis under which fewer cells are occupied than `of_quarter`. Tries
-/// one of kSpeedParts of all speeds, and the one found last.
+/// Looks for a speed along the axis under which fewer cells are occupied than `of_quarter`, among
+/// an eighth of all speeds (kSpeedParts) and the one found last.
 void MotionCheck::suspect_speed(const Eigen::Vector2d& axis, int of_quarter) {
   const std::optional<Eigen::Vector2d> last_mps = std::exchange(suspected_mps_, std::nullopt);
   int least = of_quarter;
@@ -94,7 +94,7 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
   // The true motion lays much of the scans on each other. On bare hills a false one lays some:
   // rings meet steep ground at the same ranges from scan to scan, as though it moved with the
   // sensor. Scans that hardly have cells in common tell nothing: then the number of all cells
-  // counts. The best of sixteen false motions may be two sigmas better by chance.
+  // counts. The best of 28 false motions may be two sigmas better by chance.
   return alone - least > search::kLeastShared * alone &&
          is_significant(alone - least, alone - tracked, search::kPreferSigmas) &&
          tracked - least > search::kDropSigmas * std::sqrt(static_cast<double>(tracked));

@@ -18,8 +18,9 @@ namespace lilo::core {
 /// over each other as they were tracked, everything that is fixed leaves a trail, and the scans
 /// share more cells under another motion along the road.
 ///
-/// Far from the true motion nothing fits, and the track may stagger by metres from scan to scan. So
-/// constant speeds along the road are tested too, each with one scan of search::kSpeedParts.
+/// A track may also be wrong by tens of m/s and differ by metres from scan to scan. So constant
+/// speeds along the axis, from -40 to 40 m/s, are tested too: an eighth of them with each scan, and
+/// again the one that fitted better than the track.
 ///
 /// Between two lanes that move together it is not known which of two motions is the true one. The
 /// number of occupied cells over the speed along the road then has a second minimum beside that of

@@ -86,7 +86,7 @@ TEST(ProcessNoise, RemembersTheFirstFiveChangesOfTheMotion) {
 }
 
 // The last two scans slip back along the road, so that the velocity changes by 5 m/s twice. Each
-// change counts as eight times the usual one, with a weight of a tenth.
+// change counts as eight times the estimate, with a weight of a tenth.
 TEST(ProcessNoise, ASlipLeavesTheNextScansLittleFreedom) {
   ProcessNoise noise(nominal());
   density_after(noise, [](double t_s) {
@@ -94,7 +94,16 @@ TEST(ProcessNoise, ASlipLeavesTheNextScansLittleFreedom) {
     return Pose{so3_exp(Eigen::Vector3d::Zero()), {20.0 * t_s - slipped_m, 0.0, 0.0}};
   });
   EXPECT_NEAR(noise.density()[3], 3.0 * 1.7 * 1.7, 1e-9);
-  EXPECT_EQ(noise.density()[5], 3.0);
+}
+
+// The yaw rate changes by 0.5 rad/s with the last scan: q is 3/2 of its square over T, and counts
+// sixteen times, with a weight of a tenth.
+TEST(ProcessNoise, AnAbruptTurnCountsInFull) {
+  ProcessNoise noise(nominal());
+  density_after(noise, [](double t_s) {
+    return Pose{so3_exp({0.0, 0.0, std::max(0.0, t_s - 29.85)}), Eigen::Vector3d::Zero()};
+  });
+  EXPECT_NEAR(noise.density()[2], 0.9 * 0.3 + 0.1 * 16.0 * 1.5 * 0.25 / 0.1, 1e-6);
 }
 
 TEST(ProcessNoise, CalmsDownWithTheMotion) {
