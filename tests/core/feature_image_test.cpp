@@ -159,7 +159,7 @@ TEST(FeatureImage, MakesNoRampOfFloorAndWall) {
   EXPECT_GT(ground, 4000);
 }
 
-// Twigs 20 m away: one in every column, in two rings by turns.
+// Twigs 25 m away: one in every column, in two rings by turns.
 TEST(FeatureImage, TakesNothingAboveTheHorizonFromTheColumnBeside) {
   constexpr int kColumns = 360;
   Scan scan;
@@ -167,15 +167,49 @@ TEST(FeatureImage, TakesNothingAboveTheHorizonFromTheColumnBeside) {
   scan.end_ns = 100'000'000;
   for (int column = 0; column < kColumns; ++column) {
     const auto ring = static_cast<std::uint8_t>(11 + column % 2);
-    scan.returns.push_back(return_at(k16, ring, azimuth_of(column, kColumns), 20.0));
+    scan.returns.push_back(return_at(k16, ring, azimuth_of(column, kColumns), 25.0));
   }
   core::FeatureImage image(kColumns, {});
   const std::vector<Feature>& features = image.build(scan);
   ASSERT_EQ(features.size(), kColumns);
   for (const Feature& f : features) {
     EXPECT_EQ(f.kind, FeatureKind::structure);
-    EXPECT_NEAR(f.dz_m, 20.0 * 2.0 * std::numbers::pi / 180.0, 1e-3);  // nobody knows
+    EXPECT_NEAR(f.dz_m, 25.0 * 2.0 * std::numbers::pi / 180.0, 1e-3);  // nobody knows
   }
+}
+
+// Every tenth column has what only one ring sees: a single return, or two returns side by side.
+int features_of_lone_rings(double range_m, double next_range_m) {
+  constexpr int kColumns = 360;
+  Scan scan;
+  scan.beams = k16;
+  scan.end_ns = 100'000'000;
+  for (int column = 5; column < kColumns; column += 10) {
+    scan.returns.push_back(return_at(k16, 9, azimuth_of(column, kColumns), range_m));
+    if (next_range_m == 0.0) continue;
+    scan.returns.push_back(return_at(k16, 9, azimuth_of(column + 1, kColumns), next_range_m));
+  }
+  core::FeatureImage image(kColumns, {});
+  return static_cast<int>(image.build(scan).size());
+}
+
+TEST(FeatureImage, LeavesOutSingleDrops) {
+  EXPECT_EQ(features_of_lone_rings(8.0, 0.0), 0);
+  EXPECT_EQ(features_of_lone_rings(8.0, 10.0), 0) << "two drops are not one thing";
+  EXPECT_GE(features_of_lone_rings(8.0, 8.1), 70) << "the scan begins within one of 36 pairs";
+  EXPECT_EQ(features_of_lone_rings(25.0, 0.0), 36) << "drops are not seen from there";
+}
+
+// A post that one column sees, in every ring.
+TEST(FeatureImage, KeepsAThinPost) {
+  Scan scan;
+  scan.beams = k16;
+  scan.end_ns = 100'000'000;
+  for (std::uint8_t ring = 0; ring < 16; ++ring) {
+    scan.returns.push_back(return_at(k16, ring, 0.1, 8.0));
+  }
+  core::FeatureImage image(360, {});
+  EXPECT_EQ(image.build(scan).size(), 16U);
 }
 
 // A ceiling 1.2 m above the sensor in front of it, and behind it twigs: every higher ring meets
