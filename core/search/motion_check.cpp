@@ -77,6 +77,19 @@ void MotionCheck::suspect_speed(const Eigen::Vector2d& axis, int of_quarter) {
   }
 }
 
+/// Cells at the suspected speed, with all points; `limit` if they are as many or more. Also where a
+/// slower one has fewer: in a tunnel or along a rail in fog the limit of the view moves with the
+/// sensor, and the nearer a speed is to rest, the more cells the scans share. Everything that is
+/// fixed makes a minimum at the true speed.
+int MotionCheck::occupied_at_suspected(const Eigen::Vector2d& axis, int limit) {
+  const double speed_mps = suspected_mps_->dot(axis);
+  const double slower_mps = speed_mps - std::copysign(search::kSpeedStep_mps, speed_mps);
+  const int cells = scans_.occupied_at(speed_mps, axis, Subsample::all, grid_, limit);
+  const bool is_minimum = std::abs(slower_mps) < std::abs(speed_mps) &&
+                          scans_.occupied_at(slower_mps, axis, Subsample::all, grid_) > cells;
+  return is_minimum ? cells : limit;
+}
+
 bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
   // A motion that is clearly better with all points is mostly better with a quarter of them too.
   const Eigen::Vector2d as_tracked = Eigen::Vector2d::Zero();
@@ -87,9 +100,7 @@ bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {
   }
   const int tracked = scans_.occupied_under(as_tracked, Subsample::all, grid_);
   int least = least_occupied(axis, Subsample::all, tracked);
-  if (suspected_mps_) {
-    least = scans_.occupied_at(suspected_mps_->dot(axis), axis, Subsample::all, grid_, least);
-  }
+  if (suspected_mps_) least = occupied_at_suspected(axis, least);
   const int alone = scans_.occupied_alone(grid_);
   // The true motion lays much of the scans on each other. On bare hills a false one lays some:
   // rings meet steep ground at the same ranges from scan to scan, as though it moved with the

@@ -97,6 +97,33 @@ TEST(MotionCheck, ATrackThatIsFarTooFastIsRefutedWithinFifteenScans) {
   EXPECT_LE(refuted_at, 15);
 }
 
+// Two rails that look the same everywhere, in fog: 20 m of them are seen to either side, wherever
+// the sensor is. At rest they would share the most cells.
+TEST(MotionCheck, RailsInFogRefuteNoMotion) {
+  constexpr double kTracked_mps = 40.0;
+  std::minstd_rand random(3);
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  MotionCheck check(2000);
+  for (int k = 1; k < 60; ++k) {
+    std::vector<Feature> features;
+    for (int n = 0; n < 1200; ++n) {
+      Feature f{};
+      f.x_m = static_cast<float>(uniform(-20.0, 20.0));
+      f.y_m = n % 2 == 0 ? -5.0F : 5.0F;
+      f.s = static_cast<float>(uniform(0.0, 1.0));
+      f.kind = FeatureKind::structure;
+      features.push_back(f);
+    }
+    Pose begin, end;
+    begin.translation_m.x() = kTracked_mps * kSpan_s * (k - 1);
+    end.translation_m.x() = kTracked_mps * kSpan_s * k;
+    check.add(features, begin, end, timing(1e9 * kSpan_s * k));
+    EXPECT_FALSE(check.compare({1.0, 0.0})) << "after " << k << " scans";
+  }
+}
+
 TEST(MotionCheck, WhereNothingTellsNothingIsRefuted) {
   EXPECT_EQ(scans_until_refuted(false, 0.0, {1.0, 0.0}), 100);
 }
