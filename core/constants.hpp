@@ -187,10 +187,8 @@ namespace lilo::core::registration {
 
 /// Far from the solution: one of so many features, kernels so many times as wide. 1 loses turns.
 inline constexpr std::size_t kFarStride = 4;
-/// Metres: a step below which the solution is near; rotations count by kLever_m.
-inline constexpr double kNearStep_m = 0.03;
-/// Metres: a step below which the solver has converged.
-inline constexpr double kConvergedStep_m = 3e-3;
+/// Metres: steps below which the solution is near, and has converged; rotations count by kLever_m.
+inline constexpr double kNearStep_m = 0.03, kConvergedStep_m = 3e-3;
 /// Factor of a step near the solution. Weights and cells follow each step, so that the next one
 /// would be about a sixth of it.
 inline constexpr double kOverRelaxation = 1.2;
@@ -204,6 +202,12 @@ inline constexpr float kTall_m = 2.3F, kTallWeight = 7.0F;
 
 /// Part of the information from the scan below which a direction is weak.
 inline constexpr double kWeakShare = 0.5;
+/// The same, below which the motion along a weak direction is dead reckoned. Along a smooth tunnel
+/// it is 0.03 to 0.1, because noise tilts the normals; elsewhere mostly 0.2 or more. Range: 0.1 to
+/// 0.25, by NEES.
+inline constexpr double kDeadReckonedShare = 0.15;
+/// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
+inline constexpr double kMostlyTurns_m = 0.3;
 
 /// Weight of the newest scan in the usual fit.
 inline constexpr double kFitSmoothing = 0.3;
@@ -338,12 +342,6 @@ inline constexpr double kUnusualDesignEffect = 2.0;
 inline constexpr double kLeastDesignEffect = 0.05;
 /// Scans that share the error of a cell.
 inline constexpr double kScansSharingErrors = 3.0;
-/// Part of the information from the scan below which the motion along a weak direction is dead
-/// reckoned. Along a smooth tunnel it is 0.03 to 0.1, because noise tilts the normals; elsewhere
-/// mostly 0.2 or more. Range: 0.1 to 0.25, by NEES.
-inline constexpr double kDeadReckonedShare = 0.15;
-/// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
-inline constexpr double kMostlyTurns_m = 0.3;
 /// Keyframes that a scan sees of the map at most; their errors are correlated over as many.
 inline constexpr int kKeyframesInView = 13;
 /// Correlated error of a keyframe's alignment, in parts of its standard error.

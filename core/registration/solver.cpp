@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace lilo::core {
@@ -40,6 +41,16 @@ bool is_tall(const Feature& f) { return f.z_m > registration::kTall_m; }
 KnotWeights weights_of_bin(int bin, const Prior& prior) {
   const double s = static_cast<double>(bin) / registration::kResidualInstants;
   return weights_at(s, prior.segments, prior.span_s);
+}
+
+/// The deviation of the pose between two knots.
+Vector6d interpolated(const Unknowns& knots, const KnotWeights& w) {
+  Vector6d deviation = Vector6d::Zero();
+  for (int i = 0; i < 4; ++i) {
+    deviation +=
+        w.weight[static_cast<std::size_t>(i)] * knots.segment<6>(kKnotSize * w.first + 6 * i);
+  }
+  return deviation;
 }
 
 }  // namespace
@@ -168,15 +179,24 @@ void Solver::add_residual(const Correspondence& one, float kernel_scale, float d
   for (std::size_t k = 0; k < terms.size(); ++k) sum[k] += static_cast<double>(w * terms[k]);
 }
 
-/// Of the knots, from all bins; and the information that the data have of the pose.
-Solver::Equations Solver::data_equations(const Prior& prior, Matrix6d& data_information) const {
+/// Of the pose, by all residuals as though they were independent.
+Matrix6d Solver::data_information() const {
+  Matrix6d sum = Matrix6d::Zero();
+  for (const ResidualSums& bin : bins_) {
+    sum += normal_equations(bin).first / static_cast<double>(config_.data_weight);
+  }
+  return sum;
+}
+
+/// Of the knots `x`, from all bins.
+Solver::Equations Solver::data_equations(const Prior& prior, const Unknowns& x,
+                                         const DeadReckoning& reckoned) const {
   const int n = kKnotSize * (prior.segments + 1);
   Equations all{NormalMatrix::Zero(n, n), Unknowns::Zero(n)};
-  data_information.setZero();
   for (int bin = 0; bin <= registration::kResidualInstants; ++bin) {
-    const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
-    data_information += A / static_cast<double>(config_.data_weight);
+    auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
     const KnotWeights w = weights_of_bin(bin, prior);
+    reckoned.hold(interpolated(x, w), A, c);
     for (int i = 0; i < 4; ++i) {
       const int row = kKnotSize * w.first + 6 * i;
       const double wi = w.weight[static_cast<std::size_t>(i)];
@@ -199,11 +219,7 @@ Vector6d Solver::design_effect(const Unknowns& step, const Prior& prior) const {
   for (int bin = 0; bin <= registration::kResidualInstants; ++bin) {
     const auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
     const KnotWeights w = weights_of_bin(bin, prior);
-    Vector6d moved = Vector6d::Zero();
-    for (int i = 0; i < 4; ++i) {
-      moved += w.weight[static_cast<std::size_t>(i)] * step.segment<6>(kKnotSize * w.first + 6 * i);
-    }
-    squares += (c - A * moved).cwiseAbs2();
+    squares += (c - A * interpolated(step, w)).cwiseAbs2();
     expected += static_cast<double>(config_.data_weight) * A.diagonal();
   }
   return squares.cwiseQuotient(expected.cwiseMax(1e-9));
@@ -226,12 +242,18 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   double last_step_m = std::numeric_limits<double>::infinity();
   Solution solution = unaligned(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
+  solution.motion_information = motion_information(prior);
+  std::optional<DeadReckoning> reckoned;  // as of the first step with all features
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
   weigh_by_height(features, maps, prior, solution);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, stride == 1 ? levels : Levels::from_whole, solution);
-    Equations data = data_equations(prior, solution.data_information);
+    solution.data_information = data_information();
+    if (stride == 1 && !reckoned) {
+      reckoned.emplace(solution.data_information, solution.motion_information);
+    }
     const Unknowns x = solution.trajectory.knots;
+    Equations data = data_equations(prior, x, reckoned.value_or(DeadReckoning()));
     auto& [H, b] = data;
     add_prior(prior, x, H, b);
     const Unknowns step = H.ldlt().solve(b);
@@ -251,7 +273,6 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
       solution.design_effect = design_effect(step, prior);
     }
   }
-  solution.motion_information = motion_information(prior);
   return solution;
 }
 

@@ -9,6 +9,7 @@
 #include "core/motion/motion_prior.hpp"
 #include "core/motion/trajectory.hpp"
 #include "core/odometry_config.hpp"
+#include "core/registration/weak_directions.hpp"
 
 #include <Eigen/Core>
 
@@ -110,7 +111,9 @@ class Solver {
                          const ScanSensitivity& sensitivity, BeamEquations& sums) const;
   void add_residual(const Correspondence& one, float kernel_scale, float data_weight, Sums& sums);
   Vector6d design_effect(const Unknowns& step, const Prior& prior) const;
-  Equations data_equations(const Prior& prior, Matrix6d& data_information) const;
+  [[nodiscard]] Matrix6d data_information() const;
+  [[nodiscard]] Equations data_equations(const Prior& prior, const Unknowns& x,
+                                         const DeadReckoning& reckoned) const;
 
   SolverConfig config_;
   HeightWeights height_weights_;  // of the scan being solved

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cmath>
 
 namespace lilo::core {
 
@@ -26,6 +27,40 @@ WeakDirections weak_directions(const Matrix6d& scan_information, const Matrix6d&
     one.from_scan = from_scan;
   }
   return weak;
+}
+
+bool is_translation(const WeakDirection& weak) {
+  return weak.direction.head<3>().norm() >= registration::kMostlyTurns_m;
+}
+
+bool is_dead_reckoned(const WeakDirection& weak) {
+  return is_translation(weak) && weak.from_scan < registration::kDeadReckonedShare;
+}
+
+bool is_any_dead_reckoned(const WeakDirections& weak) {
+  return std::any_of(weak.all.begin(), weak.all.begin() + weak.count, is_dead_reckoned);
+}
+
+DeadReckoning::DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information) {
+  const WeakDirections weak =
+      weak_directions(scan_information, motion_information, Eigen::Quaterniond::Identity());
+  for (int k = 0; k < weak.count; ++k) {
+    const WeakDirection& one = weak.all[static_cast<std::size_t>(k)];
+    if (!is_dead_reckoned(one)) continue;
+    Direction& direction = directions_[count_++];
+    direction.motion << one.direction.tail<3>(), one.direction.head<3>();
+    direction.motion /= std::sqrt(direction.motion.dot(motion_information * direction.motion));
+    direction.dual = motion_information * direction.motion;
+  }
+}
+
+void DeadReckoning::hold(const Vector6d& deviation, const Matrix6d& information,
+                         Vector6d& gradient) const {
+  for (std::size_t k = 0; k < count_; ++k) {
+    const auto& [motion, dual] = directions_[k];
+    const double pull = -motion.dot(information * motion) * dual.dot(deviation);
+    gradient += (pull - motion.dot(gradient)) * dual;
+  }
 }
 
 }  // namespace lilo::core

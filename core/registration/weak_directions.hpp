@@ -4,6 +4,7 @@
 #include "core/estimate.hpp"
 
 #include <array>
+#include <cstddef>
 
 namespace lilo::core {
 
@@ -23,5 +24,42 @@ struct WeakDirections {
 /// Results are in the sensor's frame, translation first, as in Estimate. No allocation.
 WeakDirections weak_directions(const Matrix6d& scan_information, const Matrix6d& motion_information,
                                const Eigen::Quaterniond& R_odom_sensor);
+
+/// Whether it mostly moves the sensor.
+bool is_translation(const WeakDirection& weak);
+/// Whether it is a translation of which the scan tells next to nothing.
+bool is_dead_reckoned(const WeakDirection& weak);
+/// Whether any of them is.
+bool is_any_dead_reckoned(const WeakDirections& weak);
+
+/// The motions of a pose along its dead reckoned directions; in a bend the sensor turns as it moves
+/// along.
+///
+/// What a scan seems to tell along them comes from the noise of the cells' normals. Such
+/// information is biased: the points of a cell and its normal have their errors in common, and draw
+/// the scan towards what was seen before (errors in variables; Fuller, Measurement Error Models,
+/// 1987). In a tunnel this pull, of some centimetres a scan, brought a vehicle with 64 beams from
+/// 20 to 5 m/s within 14 s. So such residuals keep their information, but their gradient is that of
+/// a pose where the motion was predicted.
+class DeadReckoning {
+ public:
+  /// None.
+  DeadReckoning() = default;
+  /// As weak_directions().
+  DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information);
+
+  /// Changes the gradient -J'Or of residuals with the information J'OJ, all by rotation and
+  /// translation, whose pose is off its prediction by `deviation`.
+  void hold(const Vector6d& deviation, const Matrix6d& information, Vector6d& gradient) const;
+
+ private:
+  /// A motion, scaled to have unit motion information, and that information times it. The motions
+  /// are orthogonal with respect to either information: one has no part in another.
+  struct Direction {
+    Vector6d motion, dual;
+  };
+  std::array<Direction, kMaxWeakDirections> directions_{};
+  std::size_t count_ = 0;
+};
 
 }  // namespace lilo::core

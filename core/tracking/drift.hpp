@@ -37,9 +37,11 @@ class Drift {
   /// map of so many keyframes.
   void inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor, int keyframes);
 
-  /// For `span_s` nothing was known of the motion along the columns of `axes` (unit vectors or
-  /// zero, odometry's axes) but that its acceleration is white noise of that density (m^2/s^3).
-  void coast(const Eigen::Matrix3d& axes, double acceleration_density, double span_s);
+  /// Motions of a metre each, or zero, as columns: rotation then translation (odometry's axes).
+  using Motions = Eigen::Matrix<double, 6, 3>;
+  /// For `span_s` nothing was known of the motion along these but that its acceleration is white
+  /// noise of that density (m^2/s^3). In a bend the sensor turns as it moves along.
+  void coast(const Motions& motions, double acceleration_density, double span_s);
   /// For `span_s` a scan told of all translations.
   void see(double span_s);
   /// The covariance of the error with which the first scan entered the map, about the origin, where

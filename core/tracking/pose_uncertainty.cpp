@@ -9,21 +9,6 @@
 #include <algorithm>
 
 namespace lilo::core {
-namespace {
-
-bool is_translation(const WeakDirection& weak) {
-  return weak.direction.head<3>().norm() >= tracking::kMostlyTurns_m;
-}
-
-}  // namespace
-
-bool is_dead_reckoned(const WeakDirection& weak) {
-  return is_translation(weak) && weak.from_scan < tracking::kDeadReckonedShare;
-}
-
-bool is_any_dead_reckoned(const WeakDirections& weak) {
-  return std::any_of(weak.all.begin(), weak.all.begin() + weak.count, is_dead_reckoned);
-}
 
 void PoseUncertainty::begin_map(const MotionState& state) {
   drift_.begin(covariance(state));  // the sensor's axes are the new map's
@@ -55,17 +40,19 @@ void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {
 
 void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state,
                             const Vector6d& density, double span_s) {
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+  const Eigen::Quaterniond& R = state.T_odom_sensor.rotation;
+  Drift::Motions motions = Drift::Motions::Zero();
   int count = 0;
   bool sees_all = true;
   for (int k = 0; k < weak.count && count < 3; ++k) {
     const WeakDirection& one = weak.all[static_cast<std::size_t>(k)];
     sees_all = sees_all && !is_translation(one);
     if (!is_dead_reckoned(one)) continue;
-    axes.col(count++) = state.T_odom_sensor.rotation * one.direction.head<3>().normalized();
+    motions.col(count) << R * one.direction.tail<3>(), R * one.direction.head<3>();
+    motions.col(count++) /= one.direction.head<3>().norm();
   }
   if (count > 0) {
-    drift_.coast(axes, density.segment<2>(3).mean(), span_s);
+    drift_.coast(motions, density.segment<2>(3).mean(), span_s);
   } else if (sees_all) {
     drift_.see(span_s);
   }

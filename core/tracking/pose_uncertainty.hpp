@@ -8,11 +8,6 @@
 
 namespace lilo::core {
 
-/// Whether it is a translation of which the scan tells next to nothing.
-bool is_dead_reckoned(const WeakDirection& weak);
-/// Whether any of them is.
-bool is_any_dead_reckoned(const WeakDirections& weak);
-
 /// The covariance of the pose, rotation then translation. It is the covariance of the alignment
 /// with the map, in which the scan's part is scaled by how much residuals vary from azimuth to
 /// azimuth, plus that of the map's drift.

@@ -63,6 +63,49 @@ TEST(WeakDirections, AScanThatSaysNothingIsWeakEverywhere) {
   for (const WeakDirection& one : weak.all) EXPECT_EQ(one.from_scan, 0.0);
 }
 
+/// A scan that knows all but the way along a bend of `turn_radpm`, of which it seems to know a
+/// tenth of what the motion tells.
+struct Bend {
+  explicit Bend(double turn_radpm) {
+    along << 0.0, 0.0, turn_radpm, 1.0, 0.0, 0.0;  // rx ry rz x y z
+    along.normalize();
+    const Matrix6d across = Matrix6d::Identity() - along * along.transpose();
+    scan = 1e4 * across + 0.1 * along * along.transpose();
+  }
+  Vector6d along;
+  Matrix6d scan, motion = Matrix6d::Identity();
+};
+
+TEST(DeadReckoning, OnlyThePredictionMovesThePoseAlong) {
+  const Bend bend(0.2);
+  Vector6d deviation, gradient;
+  deviation << 0.01, 0.02, 0.03, 0.4, -0.05, 0.06;
+  gradient << 5.0, -4.0, 3.0, -200.0, 7.0, 8.0;
+  const Vector6d before = gradient;
+  core::DeadReckoning(bend.scan, bend.motion).hold(deviation, bend.scan, gradient);
+  // The same information, but as though the scan had been measured where it was predicted.
+  EXPECT_NEAR(bend.along.dot(gradient), -0.1 * bend.along.dot(deviation), 1e-9);
+  const Matrix6d across = Matrix6d::Identity() - bend.along * bend.along.transpose();
+  EXPECT_NEAR((across * (gradient - before)).norm(), 0.0, 1e-9);
+  EXPECT_GT((gradient - before).norm(), 100.0);
+}
+
+TEST(DeadReckoning, NoneWhereTheScanTellsMore) {
+  Bend bend(0.2);
+  bend.scan += 0.2 * bend.along * bend.along.transpose();
+  Vector6d gradient = Vector6d::Constant(3.0);
+  core::DeadReckoning(bend.scan, bend.motion).hold(gradient, bend.scan, gradient);
+  EXPECT_EQ(gradient, Vector6d::Constant(3.0));
+}
+
+// What mostly turns the sensor, the scan is asked all the same.
+TEST(DeadReckoning, NoneThatMostlyTurns) {
+  const Bend bend(5.0);
+  Vector6d gradient = Vector6d::Constant(3.0);
+  core::DeadReckoning(bend.scan, bend.motion).hold(gradient, bend.scan, gradient);
+  EXPECT_EQ(gradient, Vector6d::Constant(3.0));
+}
+
 TEST(WeakDirections, AlongATunnel) {
   test::Scene tunnel;
   tunnel.planes = {{{0.0, 0.0, 1.0}, -1.5}, {{0.0, -1.0, 0.0}, -3.0}, {{0.0, 1.0, 0.0}, -3.0}};
