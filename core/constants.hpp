@@ -26,11 +26,6 @@ inline constexpr float kSameSurface = 3.0F;
 /// Metres. Between rings that meet the ground farther apart its height is unknown. A map that took
 /// it for straight there was bent on every fast drive. Range: 8 to 15.
 inline constexpr float kMostRingGap_m = 10.0F;
-/// Metres: most drops are nearer, and columns are 0.07 m apart there. Range: 10 to 12; with 15 a
-/// right session on bare hills ended.
-inline constexpr float kDropRange_m = 12.0F;
-/// Part by which the ranges of one thing differ from column to column. Range: 0.2 to 0.3.
-inline constexpr float kSameThing = 0.2F;
 /// Radians. Azimuths nearer to the newest return, or to the first one of the scan, may still get
 /// returns: the lasers of one firing of an HDL-64E look up to 18 degrees apart. Range: 0.17 to 0.7.
 inline constexpr float kFiringSpread_rad = 0.35F;

@@ -92,13 +92,6 @@ void FeatureImage::classify_until(int place) {
   }
 }
 
-std::array<int, 2> FeatureImage::columns_beside(int column) const {
-  const int place = place_of(column);
-  const int before = place > 0 ? column - 1 : column;
-  const int after = place + 1 < columns_ ? column + 1 : column;
-  return {(before + columns_) % columns_, after % columns_};
-}
-
 void FeatureImage::view_column(int column, ColumnView& g) const {
   const auto rows = static_cast<std::size_t>(beams_.ring_count);
   const auto pixels_of = [&](int c) { return pixels_.data() + static_cast<std::size_t>(c) * rows; };
@@ -108,12 +101,13 @@ void FeatureImage::view_column(int column, ColumnView& g) const {
     g.z_m[k] = p.z_m;
     g.t_ns[k] = p.t_ns;
   };
-  g.column = column;
   const Pixel* const pixels = pixels_of(column);
   for (std::size_t k = 0; k < rows; ++k) take(pixels[k], k);
   g.own = filled_[static_cast<std::size_t>(column)];
   Filled seen = g.own, taken = g.own;
-  for (const int other : columns_beside(column)) {
+  const int place = place_of(column);
+  for (const int side : {place > 0 ? -1 : 0, place + 1 < columns_ ? 1 : 0}) {
+    const int other = (column + side + columns_) % columns_;
     for (std::size_t word = 0; word < seen.size(); ++word) {
       std::uint64_t more = filled_[static_cast<std::size_t>(other)][word] & ~seen[word];
       seen[word] |= more;
@@ -188,7 +182,6 @@ void FeatureImage::add_feature(const ColumnView& g, std::size_t ring,
   const bool flat = (edges_.flat[below] | edges_.flat[above]) != 0;
   const bool steep = (edges_.steep[below] | edges_.steep[above]) != 0;
   if (flat && steep) return;  // a kerb or the foot of a wall: neither
-  if (!flat && !steep && may_be_drop(g, ring)) return;
   const bool level = (edges_.level[below] | edges_.level[above]) != 0;
   if (flat && g.z_m[ring] >= 0.0F && !level) return;  // a canopy seen from below
   // No surface goes from the ground to the foot of a wall.
@@ -206,20 +199,6 @@ void FeatureImage::add_feature(const ColumnView& g, std::size_t ring,
   set_sample_gap(g, foot_below ? kNone_m2 : edges_.length2_m2[below],
                  foot_above ? kNone_m2 : edges_.length2_m2[above], f);
   out.push_back(f);
-}
-
-bool FeatureImage::may_be_drop(const ColumnView& g, std::size_t ring) const {
-  const float range_m = g.horizontal_m[ring];
-  if (range_m > image::kDropRange_m) return false;
-  const std::array<int, 2> beside = columns_beside(g.column);
-  return std::none_of(beside.begin(), beside.end(), [&](int other) {
-    const auto column = static_cast<std::size_t>(other);
-    if (other == g.column) return false;
-    if ((filled_[column][ring / 64] >> (ring % 64) & 1U) == 0) return false;
-    const Pixel& p = pixels_[column * static_cast<std::size_t>(beams_.ring_count) + ring];
-    const float other_m = std::sqrt(p.x_m * p.x_m + p.y_m * p.y_m);
-    return std::abs(other_m - range_m) < image::kSameThing * range_m;
-  });
 }
 
 void FeatureImage::set_sample_gap(const ColumnView& g, float to_lower2, float to_upper2,

@@ -61,7 +61,6 @@ class FeatureImage {
     std::array<float, kMaxRings> horizontal_m;  ///< from the sensor's axis; 0: empty
     std::array<std::int32_t, kMaxRings> t_ns;
     Filled own;
-    int column = 0;
   };
   /// The edge from each ring's pixel to that of the next ring. It is flat or steep if both are on
   /// one surface, else neither. Index 2 is the edge from ring 0 to ring 1; unused edges surround
@@ -88,11 +87,6 @@ class FeatureImage {
   void classify_until(int place);
   void classify_column(int column, std::vector<Feature>& out);
   void view_column(int column, ColumnView& g) const;
-  /// The columns before and after; where the scan begins or ends, the column itself.
-  [[nodiscard]] std::array<int, 2> columns_beside(int column) const;
-  /// Whether it is near enough for a drop, and no column beside has a return of this ring at about
-  /// the same range.
-  [[nodiscard]] bool may_be_drop(const ColumnView& g, std::size_t ring) const;
   /// `taken`: the rings that have a pixel.
   void set_horizontal(const Filled& taken, ColumnView& g) const;
   void find_edges(const ColumnView& g);

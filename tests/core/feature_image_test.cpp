@@ -178,40 +178,6 @@ TEST(FeatureImage, TakesNothingAboveTheHorizonFromTheColumnBeside) {
   }
 }
 
-// Every tenth column has what only one ring sees: a single return, or two returns side by side.
-int features_of_lone_rings(double range_m, double next_range_m) {
-  constexpr int kColumns = 360;
-  Scan scan;
-  scan.beams = k16;
-  scan.end_ns = 100'000'000;
-  for (int column = 5; column < kColumns; column += 10) {
-    scan.returns.push_back(return_at(k16, 9, azimuth_of(column, kColumns), range_m));
-    if (next_range_m == 0.0) continue;
-    scan.returns.push_back(return_at(k16, 9, azimuth_of(column + 1, kColumns), next_range_m));
-  }
-  core::FeatureImage image(kColumns, {});
-  return static_cast<int>(image.build(scan).size());
-}
-
-TEST(FeatureImage, LeavesOutSingleDrops) {
-  EXPECT_EQ(features_of_lone_rings(8.0, 0.0), 0);
-  EXPECT_EQ(features_of_lone_rings(8.0, 11.0), 0) << "two drops are not one thing";
-  EXPECT_GE(features_of_lone_rings(8.0, 8.1), 70) << "the scan begins within one of 36 pairs";
-  EXPECT_EQ(features_of_lone_rings(25.0, 0.0), 36) << "drops are not seen from there";
-}
-
-// A post that one column sees, in every ring.
-TEST(FeatureImage, KeepsAThinPost) {
-  Scan scan;
-  scan.beams = k16;
-  scan.end_ns = 100'000'000;
-  for (std::uint8_t ring = 0; ring < 16; ++ring) {
-    scan.returns.push_back(return_at(k16, ring, 0.1, 8.0));
-  }
-  core::FeatureImage image(360, {});
-  EXPECT_EQ(image.build(scan).size(), 16U);
-}
-
 // A ceiling 1.2 m above the sensor in front of it, and behind it twigs: every higher ring meets
 // them a metre farther away, as nothing level overhead can be met.
 TEST(FeatureImage, TakesCeilingsAndNoCanopyOverhead) {
