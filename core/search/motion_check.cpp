@@ -77,17 +77,19 @@ void MotionCheck::suspect_speed(const Eigen::Vector2d& axis, int of_quarter) {
   }
 }
 
-/// Cells at the suspected speed, with all points; `limit` if they are as many or more. Also where a
-/// slower one has fewer: in a tunnel or along a rail in fog the limit of the view moves with the
-/// sensor, and the nearer a speed is to rest, the more cells the scans share. Everything that is
-/// fixed makes a minimum at the true speed.
+/// Cells at the suspected speed, with all points. `limit` if they are as many or more, or if the
+/// speed is no minimum: if it is rest, or if one that is 1 m/s slower has as few. In a tunnel or
+/// along a rail in fog the limit of the view moves with the sensor, and the nearer a speed is to
+/// rest, the more cells the scans share. Everything that is fixed makes a minimum at the true
+/// speed.
 int MotionCheck::occupied_at_suspected(const Eigen::Vector2d& axis, int limit) {
   const double speed_mps = suspected_mps_->dot(axis);
-  const double slower_mps = speed_mps - std::copysign(search::kSpeedStep_mps, speed_mps);
+  if (std::abs(speed_mps) < 0.5 * search::kSpeedStep_mps) return limit;
   const int cells = scans_.occupied_at(speed_mps, axis, Subsample::all, grid_, limit);
-  const bool is_minimum = std::abs(slower_mps) < std::abs(speed_mps) &&
-                          scans_.occupied_at(slower_mps, axis, Subsample::all, grid_) > cells;
-  return is_minimum ? cells : limit;
+  if (cells == limit) return limit;
+  const double slower_mps = speed_mps - std::copysign(search::kSpeedStep_mps, speed_mps);
+  const int slower = scans_.occupied_at(slower_mps, axis, Subsample::all, grid_, cells + 1);
+  return slower > cells ? cells : limit;
 }
 
 bool MotionCheck::is_clearly_better(const Eigen::Vector2d& axis) {

@@ -21,8 +21,8 @@ namespace lilo::core {
 /// A track may also be wrong by tens of m/s and differ by metres from scan to scan. So constant
 /// speeds along the axis, from -40 to 40 m/s, are tested too: an eighth of them with each scan, and
 /// again the one that fitted better than the track. Such a speed counts only if scans share more
-/// cells under it than under a slower one: where everything looks alike, as in a tunnel, they share
-/// the most at rest.
+/// cells under it than under one that is 1 m/s slower, and rest never counts: where everything
+/// looks alike, as in a tunnel, scans share the most at rest.
 ///
 /// Between two lanes that move together it is not known which of two motions is the true one. The
 /// number of occupied cells over the speed along the road then has a second minimum beside that of
