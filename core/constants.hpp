@@ -199,8 +199,8 @@ inline constexpr float kTall_m = 2.3F, kTallWeight = 7.0F;
 /// Part of the information from the scan below which a direction is weak.
 inline constexpr double kWeakShare = 0.5;
 /// The same, below which the motion along a weak direction is dead reckoned. Along a smooth tunnel
-/// it is 0.03 to 0.1, because noise tilts the normals; elsewhere mostly 0.2 or more. Range: 0.1 to
-/// 0.25, by NEES.
+/// it is 0.03 to 0.1, because noise tilts the normals; elsewhere mostly 0.2 or more. Range: 0.15 to
+/// 0.25, by NEES and by the drift in tunnels.
 inline constexpr double kDeadReckonedShare = 0.15;
 /// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
 inline constexpr double kMostlyTurns_m = 0.3;

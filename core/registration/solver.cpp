@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 namespace lilo::core {
@@ -43,7 +42,7 @@ KnotWeights weights_of_bin(int bin, const Prior& prior) {
   return weights_at(s, prior.segments, prior.span_s);
 }
 
-/// The deviation of the pose between two knots.
+/// The deviation of the pose from its prediction, or a step of it, between two knots.
 Vector6d interpolated(const Unknowns& knots, const KnotWeights& w) {
   Vector6d deviation = Vector6d::Zero();
   for (int i = 0; i < 4; ++i) {
@@ -243,17 +242,18 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   Solution solution = unaligned(prior);
   const Eigen::Index n = solution.trajectory.knots.rows();
   solution.motion_information = motion_information(prior);
-  std::optional<DeadReckoning> reckoned;  // as of the first step with all features
+  DeadReckoning reckoned;  // none before the first step with all features; then as of that one
+  bool is_reckoned = false;
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
   weigh_by_height(features, maps, prior, solution);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, stride == 1 ? levels : Levels::from_whole, solution);
     solution.data_information = data_information();
-    if (stride == 1 && !reckoned) {
-      reckoned.emplace(solution.data_information, solution.motion_information);
+    if (stride == 1 && !std::exchange(is_reckoned, true)) {
+      reckoned = DeadReckoning(solution.data_information, solution.motion_information);
     }
     const Unknowns x = solution.trajectory.knots;
-    Equations data = data_equations(prior, x, reckoned.value_or(DeadReckoning()));
+    Equations data = data_equations(prior, x, reckoned);
     auto& [H, b] = data;
     add_prior(prior, x, H, b);
     const Unknowns step = H.ldlt().solve(b);

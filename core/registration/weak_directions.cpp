@@ -44,23 +44,18 @@ bool is_any_dead_reckoned(const WeakDirections& weak) {
 DeadReckoning::DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information) {
   const WeakDirections weak =
       weak_directions(scan_information, motion_information, Eigen::Quaterniond::Identity());
-  for (int k = 0; k < weak.count; ++k) {
-    const WeakDirection& one = weak.all[static_cast<std::size_t>(k)];
-    if (!is_dead_reckoned(one)) continue;
-    Direction& direction = directions_[count_++];
-    direction.motion << one.direction.tail<3>(), one.direction.head<3>();
-    direction.motion /= std::sqrt(direction.motion.dot(motion_information * direction.motion));
-    direction.dual = motion_information * direction.motion;
-  }
+  const auto end = weak.all.begin() + weak.count;
+  const auto one = std::find_if(weak.all.begin(), end, is_dead_reckoned);
+  if (one == end || std::any_of(one + 1, end, is_dead_reckoned)) return;
+  motion_ << one->direction.tail<3>(), one->direction.head<3>();
+  motion_ /= std::sqrt(motion_.dot(motion_information * motion_));
+  dual_ = motion_information * motion_;
 }
 
 void DeadReckoning::hold(const Vector6d& deviation, const Matrix6d& information,
                          Vector6d& gradient) const {
-  for (std::size_t k = 0; k < count_; ++k) {
-    const auto& [motion, dual] = directions_[k];
-    const double pull = -motion.dot(information * motion) * dual.dot(deviation);
-    gradient += (pull - motion.dot(gradient)) * dual;
-  }
+  const double pull = -motion_.dot(information * motion_) * dual_.dot(deviation);
+  gradient += (pull - motion_.dot(gradient)) * dual_;
 }
 
 }  // namespace lilo::core

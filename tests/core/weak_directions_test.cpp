@@ -63,47 +63,72 @@ TEST(WeakDirections, AScanThatSaysNothingIsWeakEverywhere) {
   for (const WeakDirection& one : weak.all) EXPECT_EQ(one.from_scan, 0.0);
 }
 
-/// A scan that knows all but the way along a bend of `turn_radpm`, of which it seems to know a
-/// tenth of what the motion tells.
+/// A scan that knows all but the way along a bend of `turn_radpm`, of which it has `share` of the
+/// motion's information, and of the way across `share_across`. The columns of `basis` are
+/// orthogonal with respect to either information, but neither is a multiple of the identity.
 struct Bend {
-  explicit Bend(double turn_radpm) {
-    along << 0.0, 0.0, turn_radpm, 1.0, 0.0, 0.0;  // rx ry rz x y z
-    along.normalize();
-    const Matrix6d across = Matrix6d::Identity() - along * along.transpose();
-    scan = 1e4 * across + 0.1 * along * along.transpose();
+  explicit Bend(double turn_radpm, double share = 0.1, double share_across = 100.0) {
+    basis << 0.9, 0.1, 0.0, 0.2, 0.0, 0.0,  // rx ry rz x y z
+        0.0, 1.1, 0.3, 0.0, 0.1, 0.0,       //
+        0.2, 0.0, 0.8, 0.0, 0.0, 0.3,       //
+        0.0, 0.0, 0.1, 1.2, 0.0, 0.0,       //
+        0.1, 0.0, 0.0, 0.0, 0.9, 0.2,       //
+        0.0, 0.2, 0.0, 0.1, 0.0, 1.0;
+    basis.col(3) << 0.0, 0.0, turn_radpm, 1.0, 0.0, 0.0;
+    Vector6d shares = Vector6d::Constant(100.0);
+    shares[3] = share;
+    shares[4] = share_across;
+    const Matrix6d back = basis.inverse();
+    motion = back.transpose() * back;
+    scan = back.transpose() * shares.asDiagonal() * back;
   }
-  Vector6d along;
-  Matrix6d scan, motion = Matrix6d::Identity();
+  [[nodiscard]] Vector6d along() const { return basis.col(3); }
+  /// The gradient that hold() makes of kGradient.
+  [[nodiscard]] Vector6d held() const {
+    Vector6d gradient = kGradient;
+    core::DeadReckoning(scan, motion).hold(kDeviation, scan, gradient);
+    return gradient;
+  }
+
+  static inline const Vector6d kDeviation{{0.01, 0.02, 0.03, 0.4, -0.05, 0.06}};
+  static inline const Vector6d kGradient{{5.0, -4.0, 3.0, -200.0, 7.0, 8.0}};
+  Matrix6d basis, scan, motion;
 };
 
 TEST(DeadReckoning, OnlyThePredictionMovesThePoseAlong) {
   const Bend bend(0.2);
-  Vector6d deviation, gradient;
-  deviation << 0.01, 0.02, 0.03, 0.4, -0.05, 0.06;
-  gradient << 5.0, -4.0, 3.0, -200.0, 7.0, 8.0;
-  const Vector6d before = gradient;
-  core::DeadReckoning(bend.scan, bend.motion).hold(deviation, bend.scan, gradient);
-  // The same information, but as though the scan had been measured where it was predicted.
-  EXPECT_NEAR(bend.along.dot(gradient), -0.1 * bend.along.dot(deviation), 1e-9);
-  const Matrix6d across = Matrix6d::Identity() - bend.along * bend.along.transpose();
-  EXPECT_NEAR((across * (gradient - before)).norm(), 0.0, 1e-9);
-  EXPECT_GT((gradient - before).norm(), 100.0);
+  const Vector6d held = bend.held();
+  // Along the bend as though the scan had been measured where it was predicted; along the others as
+  // it was.
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d motion = bend.basis.col(k);
+    const double expected =
+        k == 3 ? -motion.dot(bend.scan * Bend::kDeviation) : motion.dot(Bend::kGradient);
+    EXPECT_NEAR(motion.dot(held), expected, 1e-9) << k;
+  }
+  EXPECT_GT((held - Bend::kGradient).norm(), 100.0);
+}
+
+// The residuals of a part of the scan have other weak directions.
+TEST(DeadReckoning, APartOfTheScanIsHeldByItsOwnInformation) {
+  const Bend bend(0.2);
+  const Matrix6d part = Vector6d{{4.0, 3.0, 2.0, 0.5, 6.0, 1.0}}.asDiagonal();
+  Vector6d gradient = Bend::kGradient;
+  core::DeadReckoning(bend.scan, bend.motion).hold(Bend::kDeviation, part, gradient);
+  const double deviation = bend.along().dot(bend.motion * Bend::kDeviation);
+  EXPECT_NEAR(bend.along().dot(gradient), -bend.along().dot(part * bend.along()) * deviation, 1e-9);
 }
 
 TEST(DeadReckoning, NoneWhereTheScanTellsMore) {
-  Bend bend(0.2);
-  bend.scan += 0.2 * bend.along * bend.along.transpose();
-  Vector6d gradient = Vector6d::Constant(3.0);
-  core::DeadReckoning(bend.scan, bend.motion).hold(gradient, bend.scan, gradient);
-  EXPECT_EQ(gradient, Vector6d::Constant(3.0));
+  EXPECT_EQ(Bend(0.2, 0.3).held(), Bend::kGradient);
 }
 
 // What mostly turns the sensor, the scan is asked all the same.
-TEST(DeadReckoning, NoneThatMostlyTurns) {
-  const Bend bend(5.0);
-  Vector6d gradient = Vector6d::Constant(3.0);
-  core::DeadReckoning(bend.scan, bend.motion).hold(gradient, bend.scan, gradient);
-  EXPECT_EQ(gradient, Vector6d::Constant(3.0));
+TEST(DeadReckoning, NoneThatMostlyTurns) { EXPECT_EQ(Bend(5.0).held(), Bend::kGradient); }
+
+// Where a scan has too little of everything, what it has must correct a wrong velocity.
+TEST(DeadReckoning, NoneWhereTwoDirectionsAreUnknown) {
+  EXPECT_EQ(Bend(0.2, 0.1, 0.1).held(), Bend::kGradient);
 }
 
 TEST(WeakDirections, AlongATunnel) {
