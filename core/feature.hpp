@@ -21,6 +21,7 @@ struct Feature {
   float dx_m, dy_m, dz_m;
   FeatureKind kind;
   std::uint8_t ring;
+  std::uint16_t column = 0;  ///< of the range image
 };
 
 /// Whether it is on a flat surface overhead: a ceiling in a room; elsewhere a bridge, a roof or,

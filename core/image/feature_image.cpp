@@ -45,6 +45,7 @@ void FeatureImage::begin(const BeamTable& beams) {
   beams_ = beams;
   columns_ = columns_for(beams.ring_count, most_columns_);
   margin_ = static_cast<int>(std::ceil(image::kFiringSpread_rad * columns_per_rad(columns_)));
+  beside_ = static_cast<int>(std::ceil(image::kNeighbours_rad * columns_per_rad(columns_)));
   const auto size = static_cast<std::size_t>(beams.ring_count) * static_cast<std::size_t>(columns_);
   pixels_.resize(size);
   edges_ = {};
@@ -58,6 +59,7 @@ void FeatureImage::begin(const BeamTable& beams) {
     features->clear();
   }
   sweep_ = {};
+  near_structure_ = {};
 }
 
 void FeatureImage::add(std::span<const Return> returns) {
@@ -67,12 +69,14 @@ void FeatureImage::add(std::span<const Return> returns) {
 
 std::vector<Feature>& FeatureImage::finish(const Scan& scan) {
   if (sweep_.invalidated || sweep_.classified == 0) {
+    near_structure_ = {};
     features_.clear();
     for (int column = 0; column < columns_; ++column) classify_column(column, features_);
   } else {
     classify_until(columns_);
     features_.insert(features_.end(), last_features_.begin(), last_features_.end());
   }
+  leave_out_drops();
   const auto duration_ns =
       static_cast<float>(std::max<std::int64_t>(scan.end_ns - scan.start_ns, 1));
   const float per_ns = 1.0F / duration_ns;
@@ -83,12 +87,8 @@ std::vector<Feature>& FeatureImage::finish(const Scan& scan) {
 
 void FeatureImage::classify_until(int place) {
   for (; sweep_.classified < place; ++sweep_.classified) {
-    const int column = sweep_.first_column + sweep_.classified;
-    if (column < columns_) {
-      classify_column(column, last_features_);
-    } else {
-      classify_column(column - columns_, features_);
-    }
+    const int column = column_at(sweep_.classified);
+    classify_column(column, column >= sweep_.first_column ? last_features_ : features_);
   }
 }
 
@@ -103,6 +103,7 @@ void FeatureImage::view_column(int column, ColumnView& g) const {
   };
   const Pixel* const pixels = pixels_of(column);
   for (std::size_t k = 0; k < rows; ++k) take(pixels[k], k);
+  g.column = column;
   g.own = filled_[static_cast<std::size_t>(column)];
   Filled seen = g.own, taken = g.own;
   const int place = place_of(column);
@@ -176,8 +177,7 @@ void FeatureImage::classify_column(int column, std::vector<Feature>& out) {
   }
 }
 
-void FeatureImage::add_feature(const ColumnView& g, std::size_t ring,
-                               std::vector<Feature>& out) const {
+void FeatureImage::add_feature(const ColumnView& g, std::size_t ring, std::vector<Feature>& out) {
   const std::size_t below = ring + 1, above = ring + 2;  // steps
   const bool flat = (edges_.flat[below] | edges_.flat[above]) != 0;
   const bool steep = (edges_.steep[below] | edges_.steep[above]) != 0;
@@ -195,9 +195,11 @@ void FeatureImage::add_feature(const ColumnView& g, std::size_t ring,
             0.0F,
             0.0F,
             flat ? FeatureKind::ground : FeatureKind::structure,
-            static_cast<std::uint8_t>(ring)};
+            static_cast<std::uint8_t>(ring),
+            static_cast<std::uint16_t>(g.column)};
   set_sample_gap(g, foot_below ? kNone_m2 : edges_.length2_m2[below],
                  foot_above ? kNone_m2 : edges_.length2_m2[above], f);
+  count_near(f, steep);
   out.push_back(f);
 }
 

@@ -25,6 +25,11 @@ struct RangeLimits {
 /// neighbours above and below: the vertical gradient of Eq. 7, in metres instead of grey levels.
 /// A pixel keeps its first return. To keep the nearest one would shorten every range by its noise.
 ///
+/// Drops of fog and rain, flakes and dust come back from single rays. Where much of the structure
+/// near by is isolated in the image, all isolated returns near by are left out. This is radius
+/// outlier removal, whose radius grows with the range (Charron et al., De-noising of Lidar Point
+/// Clouds Corrupted by Snowfall, CRV 2018), in the image plane.
+///
 /// A scan can be taken in parts while it is being measured: begin(), add() as often as needed,
 /// finish(). Columns that the sensor has passed are classified at once. If a return still comes for
 /// one of them, all columns are classified again at the end. So the features are the same bits
@@ -61,6 +66,7 @@ class FeatureImage {
     std::array<float, kMaxRings> horizontal_m;  ///< from the sensor's axis; 0: empty
     std::array<std::int32_t, kMaxRings> t_ns;
     Filled own;
+    int column = 0;
   };
   /// The edge from each ring's pixel to that of the next ring. It is flat or steep if both are on
   /// one surface, else neither. Index 2 is the edge from ring 0 to ring 1; unused edges surround
@@ -78,24 +84,34 @@ class FeatureImage {
     int classified = 0;        ///< places before this one are done
     bool invalidated = false;  ///< a column that was classified got another return
   };
+  /// Structure within image::kDropRange_m.
+  struct NearStructure {
+    int all = 0, isolated = 0;
+  };
   struct Projector;  // in feature_image_project.cpp
   static float columns_per_rad(int columns);
   void project(std::span<const Return> returns);
   void project_crowded(const Projector& projector, std::span<const Return> returns);
   void note(int column);
   [[nodiscard]] int place_of(int column) const;
+  [[nodiscard]] int column_at(int place) const;
   void classify_until(int place);
   void classify_column(int column, std::vector<Feature>& out);
   void view_column(int column, ColumnView& g) const;
   /// `taken`: the rings that have a pixel.
   void set_horizontal(const Filled& taken, ColumnView& g) const;
   void find_edges(const ColumnView& g);
-  void add_feature(const ColumnView& g, std::size_t ring, std::vector<Feature>& out) const;
+  void count_near(const Feature& f, bool steep);
+  /// Whether too few returns beside it, above and below have about its range.
+  [[nodiscard]] bool is_isolated(const Feature& f) const;
+  void leave_out_drops();
+  void add_feature(const ColumnView& g, std::size_t ring, std::vector<Feature>& out);
   void set_sample_gap(const ColumnView& g, float to_lower2, float to_upper2, Feature& f) const;
 
   int most_columns_;
   int columns_ = 0;  // for these beams
   int margin_ = 0;   // in columns
+  int beside_ = 1;   // columns to either side that have neighbours of a return
   float nearest2_, farthest2_;
   BeamTable beams_;
   std::vector<Pixel> pixels_;   // valid where filled
@@ -105,6 +121,7 @@ class FeatureImage {
   std::vector<Feature> features_;
   std::vector<Feature> last_features_;  // of columns to the right of straight behind
   Sweep sweep_;
+  NearStructure near_structure_;
 };
 
 }  // namespace lilo::core

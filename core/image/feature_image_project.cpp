@@ -83,14 +83,19 @@ void FeatureImage::project_crowded(const Projector& projector, std::span<const R
 void FeatureImage::note(int column) {
   if (sweep_.first_column < 0) sweep_.first_column = (column + margin_) % columns_;
   const int place = place_of(column);
-  // The column itself was classified, or its neighbour was, which used it.
-  if (place <= sweep_.classified && sweep_.classified > 0) sweep_.invalidated = true;
+  // The column itself was classified, or one beside it was, which used it.
+  if (place < sweep_.classified + beside_ && sweep_.classified > 0) sweep_.invalidated = true;
   if (place < columns_ - 2 * margin_ && place > sweep_.front) sweep_.front = place;
 }
 
 int FeatureImage::place_of(int column) const {
   const int place = column - sweep_.first_column;
   return place < 0 ? place + columns_ : place;
+}
+
+int FeatureImage::column_at(int place) const {
+  const int column = sweep_.first_column + place;
+  return column < columns_ ? column : column - columns_;
 }
 
 }  // namespace lilo::core

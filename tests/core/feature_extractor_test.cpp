@@ -109,6 +109,22 @@ TEST_F(InParts, WithHalfOfTheViewBlocked) {
   expect_same_in_parts(scan, "blocked");
 }
 
+TEST_F(InParts, WithDrops) {
+  std::mt19937 rng(1);
+  for (const double start_rad : {0.0, 2.0}) {
+    Scan scan = fanned_scan(start_rad);
+    for (Return& r : scan.returns) {
+      if (rng() % 4 != 0) continue;
+      const float stretch =
+          static_cast<float>(2U + rng() % 1000U / 100U) / std::hypot(r.x_m, r.y_m, r.z_m);
+      r.x_m *= stretch;
+      r.y_m *= stretch;
+      r.z_m *= stretch;
+    }
+    expect_same_in_parts(scan, std::to_string(start_rad));
+  }
+}
+
 // A data set's scan, and a return of a wrong azimuth: no column can be done with before the end.
 TEST_F(InParts, WhateverTheOrder) {
   Scan by_ring = fanned_scan(0.0);

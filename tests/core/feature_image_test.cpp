@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -237,6 +238,90 @@ TEST(FeatureImage, WaitsForTheColumnBeside) {
   }
 }
 
+/// A drop comes back from a part of the rays at a random range: from 1 to 12 m. Such returns have a
+/// negative stamp.
+void add_drops(Scan& scan, double part, std::mt19937& rng) {
+  std::uniform_real_distribution<double> chance, range_m(1.0, 12.0);
+  for (Return& r : scan.returns) {
+    const auto stretch =
+        static_cast<float>(range_m(rng)) / std::max(1.0F, std::hypot(r.x_m, r.y_m, r.z_m));
+    if (chance(rng) >= part || stretch >= 1.0F) continue;
+    r = {.x_m = r.x_m * stretch,
+         .y_m = r.y_m * stretch,
+         .z_m = r.z_m * stretch,
+         .azimuth_rad = r.azimuth_rad,
+         .t_ns = -1,
+         .ring = r.ring};
+  }
+}
+
+/// Features of drops and of other returns.
+std::array<int, 2> drops_and_others(const std::vector<Feature>& features, const Scan& scan) {
+  std::set<std::array<float, 3>> drops;
+  for (const Return& r : scan.returns) {
+    if (r.t_ns < 0) drops.insert({r.x_m, r.y_m, r.z_m});
+  }
+  std::array<int, 2> count{};
+  for (const Feature& f : features) ++count[drops.contains({f.x_m, f.y_m, f.z_m}) ? 0 : 1];
+  return count;
+}
+
+/// A square of 80 m with four poles.
+test::Scene square() {
+  test::Scene scene = test::yard();
+  for (test::Plane& plane : scene.planes) {
+    if (plane.normal.z() == 0.0) plane.offset_m = -40.0;
+  }
+  return scene;
+}
+
+// A tenth of the rays meet a drop, as in dense fog. Walls, ground and poles stay, but for that
+// tenth.
+TEST(FeatureImage, LeavesOutDropsWhereTheyAreMany) {
+  for (const int columns : {720, 1024, 4096}) {
+    std::mt19937 rng(1);
+    Scan scan = test::still_scan_of(square(), k16, {});
+    core::FeatureImage clear(columns, {}), image(columns, {});
+    const auto of_clear = static_cast<double>(clear.build(scan).size());
+    add_drops(scan, 0.1, rng);
+    const auto offered = std::count_if(scan.returns.begin(), scan.returns.end(),
+                                       [](const Return& r) { return r.t_ns < 0; });
+    const auto [drops, others] = drops_and_others(image.build(scan), scan);
+    EXPECT_LT(drops, offered / 10) << columns << " columns, of " << offered;
+    EXPECT_GT(others, 0.8 * of_clear) << columns << " columns, of " << of_clear;
+  }
+}
+
+// A few single returns are twigs and wires.
+TEST(FeatureImage, KeepsSingleReturnsInClearAir) {
+  std::mt19937 rng(1);
+  Scan scan = test::still_scan_of(square(), k16, {});
+  add_drops(scan, 0.003, rng);
+  core::FeatureImage image(1024, {});
+  EXPECT_GT(drops_and_others(image.build(scan), scan)[0], 30);
+}
+
+// A post as wide as one firing, in fog.
+TEST(FeatureImage, KeepsAThinPostAmongDrops) {
+  constexpr int kColumns = 360;
+  std::mt19937 rng(1);
+  test::Scene plain;
+  plain.planes = {{{0.0, 0.0, 1.0}, -1.5}};
+  Scan scan = test::still_scan_of(plain, test::even_beams(16, -15.0, 0.0), {});
+  add_drops(scan, 0.3, rng);
+  std::erase_if(scan.returns,
+                [](const Return& r) { return std::abs(r.azimuth_rad - 1.0F) < 0.1F; });
+  for (std::uint8_t ring = 0; ring < 16; ++ring) {
+    scan.returns.push_back(return_at(scan.beams, ring, 1.0, 8.0));
+  }
+  core::FeatureImage image(kColumns, {});
+  int of_post = 0;
+  for (const Feature& f : image.build(scan)) {
+    if (std::abs(std::atan2(f.y_m, f.x_m) - 1.0F) < 0.05F) ++of_post;
+  }
+  EXPECT_EQ(of_post, 14);  // the end rings have one neighbour
+}
+
 // Against a loop over them one by one; with 64 rings there are more returns than pixels.
 TEST(FeatureImage, APixelKeepsItsFirstGoodReturn) {
   std::mt19937 rng(1);
@@ -254,7 +339,7 @@ TEST(FeatureImage, APixelKeepsItsFirstGoodReturn) {
       const int column = below(static_cast<unsigned>(columns));
       const bool is_near = below(5) == 0, is_none = below(5) == 0, is_foreign = below(5) == 0;
       Return r = return_at(beams, static_cast<std::uint8_t>(below(static_cast<unsigned>(rings))),
-                           azimuth_of(column, columns), is_near ? 0.5 : 5.0 + below(40));
+                           azimuth_of(column, columns), is_near ? 0.5 : 35.0 + below(40));
       r.t_ns = k;
       if (is_none) r.x_m = std::numeric_limits<float>::quiet_NaN();
       if (is_foreign)
