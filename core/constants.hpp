@@ -26,17 +26,22 @@ inline constexpr float kSameSurface = 3.0F;
 /// Metres. Between rings that meet the ground farther apart its height is unknown. A map that took
 /// it for straight there was bent on every fast drive. Range: 8 to 15.
 inline constexpr float kMostRingGap_m = 10.0F;
-/// Metres, horizontal: drops and flakes are seen up to here.
+/// Metres, horizontal: drops, flakes and dust that are farther off mostly give no return. Range: 20
+/// to 30.
 inline constexpr float kDropRange_m = 30.0F;
-/// Without so many neighbours in the image a return is isolated: in the next rings, and as far
-/// aside, where the range differs by this part at most. A VLP-16's firings are 0.2 degrees apart at
-/// 10 Hz and 0.4 at 20.
+/// A return with fewer neighbours is isolated. Neighbours are in the same ring or the next ones,
+/// and in columns up to kNeighbours_rad to either side. Range: 2 to 3.
 inline constexpr int kLeastNeighbours = 2;
-inline constexpr float kNeighbours_rad = 0.007F, kSameRange = 0.1F;
-/// Isolated structure within kDropRange_m: more than so many and than this part of all structure
-/// there is drops. In clear air the part is 0.14 at most, in fog, snow and dust mostly more than
-/// 0.22.
+/// Radians, 0.4 degrees, rounded up to whole columns: from one firing to the next of a VLP-16 at 20
+/// Hz. At 10 Hz it is half as much.
+inline constexpr float kNeighbours_rad = 0.007F;
+/// Part of the horizontal range by which that of a neighbour differs at most.
+inline constexpr float kSameRange = 0.1F;
+/// Features: so many isolated ones within kDropRange_m may be twigs and wires, however little else
+/// is there.
 inline constexpr int kMostIsolated = 100;
+/// Part of the structure within kDropRange_m: where more is isolated, it is drops. It is 0.14 at
+/// most in clear air, and mostly more than 0.22 in fog, snow and dust.
 inline constexpr float kMostIsolatedPart = 0.2F;
 /// Radians. Azimuths nearer to the newest return, or to the first one of the scan, may still get
 /// returns: the lasers of one firing of an HDL-64E look up to 18 degrees apart. Range: 0.17 to 0.7.

@@ -64,7 +64,7 @@ void FeatureImage::begin(const BeamTable& beams) {
 
 void FeatureImage::add(std::span<const Return> returns) {
   project(returns);
-  if (!sweep_.invalidated) classify_until(sweep_.front - margin_);
+  if (!sweep_.invalidated) classify_until(sweep_.front - margin_ - beside_);
 }
 
 std::vector<Feature>& FeatureImage::finish(const Scan& scan) {

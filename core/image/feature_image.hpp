@@ -25,10 +25,11 @@ struct RangeLimits {
 /// neighbours above and below: the vertical gradient of Eq. 7, in metres instead of grey levels.
 /// A pixel keeps its first return. To keep the nearest one would shorten every range by its noise.
 ///
-/// Drops of fog and rain, flakes and dust come back from single rays. Where much of the structure
-/// near by is isolated in the image, all isolated returns near by are left out. This is radius
-/// outlier removal, whose radius grows with the range (Charron et al., De-noising of Lidar Point
-/// Clouds Corrupted by Snowfall, CRV 2018), in the image plane.
+/// Drops of fog or rain, flakes and dust give returns of single rays. Where much of the structure
+/// within image::kDropRange_m is isolated in the image, the features of all isolated returns there
+/// are left out, those of ground too. This is dynamic radius outlier removal (Charron et al.,
+/// De-noising of Lidar Point Clouds Corrupted by Snowfall, CRV 2018) in the image plane. Isolated
+/// returns still have edges with others.
 ///
 /// A scan can be taken in parts while it is being measured: begin(), add() as often as needed,
 /// finish(). Columns that the sensor has passed are classified at once. If a return still comes for
@@ -66,7 +67,7 @@ class FeatureImage {
     std::array<float, kMaxRings> horizontal_m;  ///< from the sensor's axis; 0: empty
     std::array<std::int32_t, kMaxRings> t_ns;
     Filled own;
-    int column = 0;
+    int column;
   };
   /// The edge from each ring's pixel to that of the next ring. It is flat or steep if both are on
   /// one surface, else neither. Index 2 is the edge from ring 0 to ring 1; unused edges surround
@@ -84,7 +85,8 @@ class FeatureImage {
     int classified = 0;        ///< places before this one are done
     bool invalidated = false;  ///< a column that was classified got another return
   };
-  /// Structure within image::kDropRange_m.
+  /// Features of structure within image::kDropRange_m. Of those with a steep edge none is counted
+  /// as isolated: they are part of something.
   struct NearStructure {
     int all = 0, isolated = 0;
   };
@@ -102,7 +104,8 @@ class FeatureImage {
   void set_horizontal(const Filled& taken, ColumnView& g) const;
   void find_edges(const ColumnView& g);
   void count_near(const Feature& f, bool steep);
-  /// Whether too few returns beside it, above and below have about its range.
+  /// Whether too few returns in the columns and rings around it have about its horizontal range.
+  /// Columns on the other side of the seam are not among them: a revolution lies between.
   [[nodiscard]] bool is_isolated(const Feature& f) const;
   void leave_out_drops();
   void add_feature(const ColumnView& g, std::size_t ring, std::vector<Feature>& out);
@@ -111,7 +114,7 @@ class FeatureImage {
   int most_columns_;
   int columns_ = 0;  // for these beams
   int margin_ = 0;   // in columns
-  int beside_ = 1;   // columns to either side that have neighbours of a return
+  int beside_ = 1;   // columns to either side in which a return's neighbours are
   float nearest2_, farthest2_;
   BeamTable beams_;
   std::vector<Pixel> pixels_;   // valid where filled

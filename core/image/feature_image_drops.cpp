@@ -3,6 +3,7 @@
 #include "core/image/feature_image.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace lilo::core {
@@ -14,7 +15,6 @@ bool is_near(const Feature& f) {
 
 }  // namespace
 
-/// What has a steep edge is part of something.
 void FeatureImage::count_near(const Feature& f, bool steep) {
   if (f.kind == FeatureKind::ground || !is_near(f)) return;
   ++near_structure_.all;

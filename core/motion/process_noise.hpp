@@ -27,8 +27,8 @@ class ProcessNoise {
   explicit ProcessNoise(const Vector6d& nominal) : nominal_(nominal), density_(nominal) {}
 
   /// The pose in the middle of an aligned scan, and its instant. `variance`: of that pose by the
-  /// scan's returns alone (rad^2, m^2). It is subtracted, since it makes velocities differ as well;
-  /// along a tunnel nothing else does. If it is not finite the estimate stays.
+  /// scan's returns alone (rad^2, m^2). It is subtracted, since it makes velocities differ as well.
+  /// If it is not finite the estimate stays.
   void observe(const Pose& T_middle, std::int64_t stamp_ns, const Vector6d& variance);
   /// The next pose does not continue the motion observed so far.
   void interrupt() { observed_ = 0; }

@@ -42,7 +42,7 @@ KnotWeights weights_of_bin(int bin, const Prior& prior) {
   return weights_at(s, prior.segments, prior.span_s);
 }
 
-/// The deviation of the pose from its prediction, or a step of it, between two knots.
+/// The deviation of the pose from its prediction between two knots, or a step of the pose there.
 Vector6d interpolated(const Unknowns& knots, const KnotWeights& w) {
   Vector6d deviation = Vector6d::Zero();
   for (int i = 0; i < 4; ++i) {
@@ -243,14 +243,15 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
   const Eigen::Index n = solution.trajectory.knots.rows();
   solution.motion_information = motion_information(prior);
   DeadReckoning reckoned;  // none before the first step with all features; then as of that one
-  bool is_reckoned = false;
+  bool is_first_with_all = true;
   cached_cells_.assign(features.size(), LocalMaps::kNoCells);
   weigh_by_height(features, maps, prior, solution);
   while (solution.iterations < config_.max_iterations && !solution.converged) {
     accumulate(features, stride, maps, stride == 1 ? levels : Levels::from_whole, solution);
     solution.data_information = data_information();
-    if (stride == 1 && !std::exchange(is_reckoned, true)) {
+    if (stride == 1 && is_first_with_all) {
       reckoned = DeadReckoning(solution.data_information, solution.motion_information);
+      is_first_with_all = false;
     }
     const Unknowns x = solution.trajectory.knots;
     Equations data = data_equations(prior, x, reckoned);

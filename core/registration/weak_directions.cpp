@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
 
 namespace lilo::core {
 
@@ -44,9 +46,9 @@ bool is_any_dead_reckoned(const WeakDirections& weak) {
 DeadReckoning::DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information) {
   const WeakDirections weak =
       weak_directions(scan_information, motion_information, Eigen::Quaterniond::Identity());
-  const auto end = weak.all.begin() + weak.count;
-  const auto one = std::find_if(weak.all.begin(), end, is_dead_reckoned);
-  if (one == end || std::any_of(one + 1, end, is_dead_reckoned)) return;
+  const auto all = std::span(weak.all).first(static_cast<std::size_t>(weak.count));
+  const auto one = std::find_if(all.begin(), all.end(), is_dead_reckoned);
+  if (one == all.end() || std::any_of(one + 1, all.end(), is_dead_reckoned)) return;
   motion_ << one->direction.tail<3>(), one->direction.head<3>();
   motion_ /= std::sqrt(motion_.dot(motion_information * motion_));
   dual_ = motion_information * motion_;

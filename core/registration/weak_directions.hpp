@@ -31,8 +31,8 @@ bool is_dead_reckoned(const WeakDirection& weak);
 /// Whether any of them is.
 bool is_any_dead_reckoned(const WeakDirections& weak);
 
-/// The motion of a pose along the only direction that is dead reckoned, if there is just one; in a
-/// bend the sensor turns as it moves along.
+/// The motion of a pose along its dead reckoned direction, if there is just one. In a bend the
+/// sensor turns as it moves along.
 ///
 /// What a scan seems to tell along it comes from the noise of the cells' normals. Such information
 /// is biased: the points of a cell and its normal have their errors in common, and draw the scan
@@ -41,8 +41,9 @@ bool is_any_dead_reckoned(const WeakDirections& weak);
 /// from 20 to 5 m/s within 14 s, while the vehicle kept 20. So such residuals keep their
 /// information, but draw the pose towards its prediction instead.
 ///
-/// Where two directions are dead reckoned, as in dense dust, the scan has too little of everything.
-/// A wrong velocity would then be held for ever: what little the scan tells must correct it.
+/// Where two or more directions are dead reckoned, as in dense dust, the scan has too little of
+/// everything, and none of them is held: what little the scan tells must correct a wrong velocity.
+/// The covariance grows along each of them all the same.
 class DeadReckoning {
  public:
   /// None.
@@ -50,14 +51,14 @@ class DeadReckoning {
   /// As weak_directions().
   DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information);
 
-  /// Changes the gradient -J'Or of residuals with the information J'OJ. All are by rotation and
-  /// translation, and so is `deviation`, of the residuals' pose from where it was predicted.
+  /// Of the gradient -J'Or of residuals whose information is J'OJ, replaces the part along the
+  /// motion by what draws their pose back to its prediction. `deviation`: of that pose from its
+  /// prediction. All are by rotation, then translation.
   void hold(const Vector6d& deviation, const Matrix6d& information, Vector6d& gradient) const;
 
  private:
-  /// The motion, scaled to have unit motion information, and that information times it. The rest of
-  /// the pose is orthogonal to it with respect to either information of the constructor: it has no
-  /// part in the dual.
+  /// A motion with unit motion information, and that information times the motion. Zero if none.
+  /// Every other generalised eigenvector of the constructor's informations has no part in the dual.
   Vector6d motion_ = Vector6d::Zero(), dual_ = Vector6d::Zero();
 };
 

@@ -77,11 +77,11 @@ void MotionCheck::suspect_speed(const Eigen::Vector2d& axis, int of_quarter) {
   }
 }
 
-/// Cells at the suspected speed, with all points. `limit` if they are as many or more, or if the
-/// speed is no minimum: if it is rest, or if one that is 1 m/s slower has as few. In a tunnel or
-/// along a rail in fog the limit of the view moves with the sensor, and the nearer a speed is to
-/// rest, the more cells the scans share. Everything that is fixed makes a minimum at the true
-/// speed.
+/// Cells at the suspected speed, with all points; `limit` if they are as many or more. Also `limit`
+/// if the speed is rest or no minimum: if the speed a step slower has as few cells or fewer. In a
+/// tunnel or along a rail in fog the limit of the view moves with the sensor, and the nearer a
+/// speed is to rest, the more cells the scans share. Everything that is fixed makes a minimum at
+/// the true speed.
 int MotionCheck::occupied_at_suspected(const Eigen::Vector2d& axis, int limit) {
   const double speed_mps = suspected_mps_->dot(axis);
   if (std::abs(speed_mps) < 0.5 * search::kSpeedStep_mps) return limit;

@@ -238,7 +238,7 @@ TEST(FeatureImage, WaitsForTheColumnBeside) {
   }
 }
 
-/// A drop comes back from a part of the rays at a random range: from 1 to 12 m. Such returns have a
+/// A part of the rays meet a drop 1 to 12 m away, unless something is nearer. Such returns have a
 /// negative stamp.
 void add_drops(Scan& scan, double part, std::mt19937& rng) {
   std::uniform_real_distribution<double> chance, range_m(1.0, 12.0);
@@ -278,7 +278,7 @@ test::Scene square() {
 // A tenth of the rays meet a drop, as in dense fog. Walls, ground and poles stay, but for that
 // tenth.
 TEST(FeatureImage, LeavesOutDropsWhereTheyAreMany) {
-  for (const int columns : {720, 1024, 4096}) {
+  for (const int columns : {720, 1024, 2304}) {
     std::mt19937 rng(1);
     Scan scan = test::still_scan_of(square(), k16, {});
     core::FeatureImage clear(columns, {}), image(columns, {});
@@ -299,6 +299,115 @@ TEST(FeatureImage, KeepsSingleReturnsInClearAir) {
   add_drops(scan, 0.003, rng);
   core::FeatureImage image(1024, {});
   EXPECT_GT(drops_and_others(image.build(scan), scan)[0], 30);
+}
+
+/// Returns of one ring in every 16th column of 2048, so many in a row, and the first ones.
+constexpr int kManyColumns = 2048;
+Scan apart(int count, double range_m, int in_a_row = 1) {
+  Scan scan;
+  scan.beams = k16;
+  scan.end_ns = 100'000'000;
+  for (int k = 0; k < count * in_a_row; ++k) {
+    const int column = 16 * (k / in_a_row) + k % in_a_row;
+    scan.returns.push_back(return_at(k16, 9, azimuth_of(column, kManyColumns), range_m));
+  }
+  return scan;
+}
+
+void append(Scan& scan, const Scan& more, int from_ring) {
+  for (Return r : more.returns) {
+    const double azimuth_rad = static_cast<double>(r.azimuth_rad);
+    const auto ring = static_cast<std::uint8_t>(from_ring);
+    const double flat_m = static_cast<double>(std::hypot(r.x_m, r.y_m));
+    scan.returns.push_back(return_at(k16, ring, azimuth_rad, flat_m));
+  }
+}
+
+TEST(FeatureImage, LeavesOutIsolatedReturnsFromAHundredOn) {
+  core::FeatureImage image(kManyColumns, {});
+  EXPECT_EQ(image.build(apart(100, 10.0)).size(), 100U);
+  EXPECT_EQ(image.build(apart(101, 10.0)).size(), 0U);
+  EXPECT_EQ(image.build(apart(101, 31.0)).size(), 101U) << "no drop is seen from there";
+  Scan near_and_far = apart(101, 29.0);
+  append(near_and_far, apart(50, 31.0), 12);
+  EXPECT_EQ(image.build(near_and_far).size(), 50U) << "those 31 m off";
+  EXPECT_EQ(image.build(apart(60, 10.0)).size(), 60U);
+  EXPECT_EQ(image.build(apart(60, 10.0)).size(), 60U) << "nothing is left of the scan before";
+}
+
+// Beside a wall of one ring.
+TEST(FeatureImage, LeavesOutIsolatedReturnsIfTheyAreAFifth) {
+  core::FeatureImage image(kManyColumns, {});
+  for (const int wall : {400, 500}) {
+    Scan scan = apart(110, 10.0);
+    append(scan, apart(wall / 16, 10.0, 16), 13);
+    const std::size_t expected = wall == 400 ? 400U : 496U + 110U;
+    EXPECT_EQ(image.build(scan).size(), expected) << wall;
+  }
+}
+
+// A return and one to either side of it. The scan may begin within one of the 101 groups.
+TEST(FeatureImage, NeighboursAreUpToThreeColumnsOf2048AndOneRingAway) {
+  core::FeatureImage image(kManyColumns, {});
+  const auto with_two_more = [&](int aside, int up, double farther) {
+    Scan scan = apart(101, 10.0);
+    for (int k = 0; k < 101; ++k) {
+      for (const int side : {-1, 1}) {
+        const double azimuth_rad = azimuth_of(16 * k + 4 + side * aside, kManyColumns);
+        const auto ring = static_cast<std::uint8_t>(9 + up);
+        scan.returns.push_back(return_at(k16, ring, azimuth_rad, 10.0 * farther));
+      }
+      scan.returns[static_cast<std::size_t>(k)] =
+          return_at(k16, 9, azimuth_of(16 * k + 4, kManyColumns), 10.0);
+    }
+    int of_middle = 0;
+    for (const Feature& f : image.build(scan)) {
+      if ((f.column - 4) % 16 == 0 && f.ring == 9) ++of_middle;
+    }
+    return of_middle;
+  };
+  EXPECT_GE(with_two_more(3, 0, 1.09), 100);
+  EXPECT_EQ(with_two_more(4, 0, 1.09), 0);
+  EXPECT_GE(with_two_more(3, 1, 1.09), 100);
+  EXPECT_EQ(with_two_more(3, 2, 1.09), 0);
+  EXPECT_EQ(with_two_more(3, 0, 1.11), 0);
+  EXPECT_GE(with_two_more(3, 0, 0.91), 100);
+  EXPECT_EQ(with_two_more(3, 0, 0.89), 0);
+}
+
+// However late the neighbours of an isolated return come, it is not counted as isolated.
+TEST(FeatureImage, WaitsForNeighbours) {
+  core::FeatureImage image(kManyColumns, {});
+  for (int front = 1000; front < 1016; ++front) {
+    for (int beside = 0; beside < 16 * 8; ++beside) {
+      Scan scan = apart(101, 10.0);
+      const auto far = std::find_if(scan.returns.begin(), scan.returns.end(), [&](const Return& r) {
+        return static_cast<double>(r.azimuth_rad) < azimuth_of(front, kManyColumns);
+      });
+      const auto at = far - scan.returns.begin();
+      const int column = front - 64 - beside;
+      for (const int k : {0, 1}) {
+        const double azimuth_rad = azimuth_of(column + k, kManyColumns);
+        scan.returns.insert(scan.returns.begin() + at + k, return_at(k16, 9, azimuth_rad, 10.0));
+      }
+      scan.returns.insert(scan.returns.begin() + at,
+                          return_at(k16, 14, azimuth_of(front, kManyColumns), 50.0));
+      image.begin(k16);
+      image.add(std::span(scan.returns).first(static_cast<std::size_t>(at) + 1));
+      image.add(std::span(scan.returns).subspan(static_cast<std::size_t>(at) + 1));
+      const std::size_t in_parts = image.finish(scan).size();
+      ASSERT_EQ(in_parts, image.build(scan).size()) << front << " " << column;
+    }
+  }
+}
+
+TEST(FeatureImage, FeaturesHaveTheirColumn) {
+  core::FeatureImage image(kManyColumns, {});
+  for (const Feature& f : image.build(test::still_scan_of(test::yard(), k16, {}))) {
+    const double azimuth_rad = std::atan2(static_cast<double>(f.y_m), static_cast<double>(f.x_m));
+    const double off_rad = azimuth_rad - azimuth_of(f.column, kManyColumns);
+    ASSERT_LT(std::abs(std::remainder(off_rad, 2.0 * std::numbers::pi)), 0.0017) << f.column;
+  }
 }
 
 // A post as wide as one firing, in fog.
@@ -338,8 +447,9 @@ TEST(FeatureImage, APixelKeepsItsFirstGoodReturn) {
     for (int k = 0; k < 3 * rings * columns; ++k) {
       const int column = below(static_cast<unsigned>(columns));
       const bool is_near = below(5) == 0, is_none = below(5) == 0, is_foreign = below(5) == 0;
-      Return r = return_at(beams, static_cast<std::uint8_t>(below(static_cast<unsigned>(rings))),
-                           azimuth_of(column, columns), is_near ? 0.5 : 35.0 + below(40));
+      Return r =
+          return_at(beams, static_cast<std::uint8_t>(below(static_cast<unsigned>(rings))),
+                    azimuth_of(column, columns), is_near ? 0.5 : 35.0 + below(40));  // no drops
       r.t_ns = k;
       if (is_none) r.x_m = std::numeric_limits<float>::quiet_NaN();
       if (is_foreign)

@@ -63,21 +63,23 @@ TEST(WeakDirections, AScanThatSaysNothingIsWeakEverywhere) {
   for (const WeakDirection& one : weak.all) EXPECT_EQ(one.from_scan, 0.0);
 }
 
-/// A scan that knows all but the way along a bend of `turn_radpm`, of which it has `share` of the
-/// motion's information, and of the way across `share_across`. The columns of `basis` are
+/// A bend of `turn_radpm`. The scan has `share` of the motion's information along it,
+/// `share_across` across it and `share_of_pitch` of pitch. The columns of `basis` are
 /// orthogonal with respect to either information, but neither is a multiple of the identity.
 struct Bend {
-  explicit Bend(double turn_radpm, double share = 0.1, double share_across = 100.0) {
-    basis << 0.9, 0.1, 0.0, 0.2, 0.0, 0.0,  // rx ry rz x y z
+  explicit Bend(double turn_radpm, double share = 0.1, double share_across = 100.0,
+                double share_of_pitch = 100.0) {
+    basis << 0.9, 0.1, 0.0, 0.0, 0.0, 0.0,  // rows: rx ry rz x y z
         0.0, 1.1, 0.3, 0.0, 0.1, 0.0,       //
         0.2, 0.0, 0.8, 0.0, 0.0, 0.3,       //
-        0.0, 0.0, 0.1, 1.2, 0.0, 0.0,       //
+        0.0, 0.0, 0.1, 0.0, 0.0, 0.0,       //
         0.1, 0.0, 0.0, 0.0, 0.9, 0.2,       //
-        0.0, 0.2, 0.0, 0.1, 0.0, 1.0;
+        0.0, 0.2, 0.0, 0.0, 0.0, 1.0;
     basis.col(3) << 0.0, 0.0, turn_radpm, 1.0, 0.0, 0.0;
     Vector6d shares = Vector6d::Constant(100.0);
     shares[3] = share;
     shares[4] = share_across;
+    shares[1] = share_of_pitch;
     const Matrix6d back = basis.inverse();
     motion = back.transpose() * back;
     scan = back.transpose() * shares.asDiagonal() * back;
@@ -128,7 +130,13 @@ TEST(DeadReckoning, NoneThatMostlyTurns) { EXPECT_EQ(Bend(5.0).held(), Bend::kGr
 
 // Where a scan has too little of everything, what it has must correct a wrong velocity.
 TEST(DeadReckoning, NoneWhereTwoDirectionsAreUnknown) {
-  EXPECT_EQ(Bend(0.2, 0.1, 0.1).held(), Bend::kGradient);
+  EXPECT_EQ(Bend(0.2, 0.1, 0.12).held(), Bend::kGradient);
+  EXPECT_EQ(Bend(0.2, 0.1, 0.12, 0.11).held(), Bend::kGradient) << "with a rotation between them";
+}
+
+TEST(DeadReckoning, AlsoBesideOtherWeakDirections) {
+  EXPECT_NE(Bend(0.2, 0.1, 0.3).held(), Bend::kGradient) << "a translation that is better known";
+  EXPECT_NE(Bend(0.2, 0.1, 100.0, 0.01).held(), Bend::kGradient) << "a rotation that is not";
 }
 
 TEST(WeakDirections, AlongATunnel) {
