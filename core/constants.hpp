@@ -5,60 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Every constant of profile `default` that is not in its configuration (odometry_config.hpp): its
-/// unit, its meaning and, after "Range:", the values between which it hardly matters. Both ends of
-/// a range were measured: the drift of simulated drives stayed within its spread or fell
-/// (core/README.md, "What mechanisms and constants are worth"). Without a range a constant was not
-/// measured. Sizes of batches and of memory stand where they are used.
-
-/// From returns to features.
-namespace lilo::core::image {
-
-/// Slope (tangent) above which a surface is structure. The ground under a tilted sensor or on a
-/// hill stays below it. 40 degrees. Range: 0.42 to 1.68.
-inline constexpr float kSteepSlope = 0.84F;
-/// Slope below which a flat surface overhead is a ceiling, however a hand tilts the sensor. 17
-/// degrees. Range: 0.15 to 0.6.
-inline constexpr float kLevelSlope = 0.3F;
-/// Two returns are on one surface up to this many times the distance at which the rings would meet
-/// a surface of that slope. Range: 1.5 to 6.
-inline constexpr float kSameSurface = 3.0F;
-/// Metres. Between rings that meet the ground farther apart its height is unknown. A map that took
-/// it for straight there was bent on every fast drive. Range: 8 to 15.
-inline constexpr float kMostRingGap_m = 10.0F;
-/// Metres, horizontal: drops, flakes and dust that are farther off mostly give no return. Range: 20
-/// to 30.
-inline constexpr float kDropRange_m = 30.0F;
-/// A return with fewer neighbours is isolated. Neighbours are in the same ring or the next ones,
-/// and in columns up to kNeighbours_rad to either side. Range: 2 to 3.
-inline constexpr int kLeastNeighbours = 2;
-/// Radians, 0.4 degrees, rounded up to whole columns: from one firing to the next of a VLP-16 at 20
-/// Hz. At 10 Hz it is half as much.
-inline constexpr float kNeighbours_rad = 0.007F;
-/// Part of the horizontal range by which that of a neighbour differs at most.
-inline constexpr float kSameRange = 0.1F;
-/// Features: so many isolated ones within kDropRange_m may be twigs and wires, however little else
-/// is there.
-inline constexpr int kMostIsolated = 100;
-/// Part of the structure within kDropRange_m: where more is isolated, it is drops. It is 0.14 at
-/// most in clear air, and mostly more than 0.22 in fog, snow and dust.
-inline constexpr float kMostIsolatedPart = 0.2F;
-/// Radians. Azimuths nearer to the newest return, or to the first one of the scan, may still get
-/// returns: the lasers of one firing of an HDL-64E look up to 18 degrees apart. Range: 0.17 to 0.7.
-inline constexpr float kFiringSpread_rad = 0.35F;
-/// Pixels of an image at most, and so features. Range, with 64 rings: 512 to 1024 columns.
-inline constexpr int kMostPixels = 64 * 576;
-/// Metres: voxels of ground and of structure in the first scan, before they adapt.
-inline constexpr std::array<float, 2> kFirstVoxel_m{1.0F, 0.5F};
-/// Metres: bounds of a voxel.
-inline constexpr float kLeastVoxel_m = 0.05F, kMostVoxel_m = 5.0F;
-/// A voxel grows by this power of how many times too many features there were. On surfaces 0.5
-/// would be exact; less damps.
-inline constexpr float kVoxelPower = 0.35F;
-/// Passes over a scan at most, until the number of features is near its goal.
-inline constexpr int kVoxelPasses = 8;
-
-}  // namespace lilo::core::image
+/// Every constant of profile `default` that is not in its configuration (odometry_config.hpp);
+/// those of image/ are in image/constants.hpp. Its unit, its meaning and, after "Range:", the
+/// values between which it hardly matters. Both ends of a range were measured: the drift of
+/// simulated drives stayed within its spread or fell (core/README.md, "What mechanisms and
+/// constants are worth"). Without a range a constant was not measured. Sizes of batches and of
+/// memory stand where they are used.
 
 /// Errors of the beams.
 namespace lilo::core::calibration {

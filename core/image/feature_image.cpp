@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/image/feature_image.hpp"
 
-#include "core/constants.hpp"
+#include "core/image/constants.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -87,8 +87,12 @@ std::vector<Feature>& FeatureImage::finish(const Scan& scan) {
 
 void FeatureImage::classify_until(int place) {
   for (; sweep_.classified < place; ++sweep_.classified) {
-    const int column = column_at(sweep_.classified);
-    classify_column(column, column >= sweep_.first_column ? last_features_ : features_);
+    const int column = sweep_.first_column + sweep_.classified;
+    if (column < columns_) {
+      classify_column(column, last_features_);
+    } else {
+      classify_column(column - columns_, features_);
+    }
   }
 }
 

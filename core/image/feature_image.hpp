@@ -96,7 +96,6 @@ class FeatureImage {
   void project_crowded(const Projector& projector, std::span<const Return> returns);
   void note(int column);
   [[nodiscard]] int place_of(int column) const;
-  [[nodiscard]] int column_at(int place) const;
   void classify_until(int place);
   void classify_column(int column, std::vector<Feature>& out);
   void view_column(int column, ColumnView& g) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/constants.hpp"
+#include "core/image/constants.hpp"
 #include "core/image/feature_image.hpp"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ void FeatureImage::count_near(const Feature& f, bool steep) {
 
 bool FeatureImage::is_isolated(const Feature& f) const {
   const float range2 = f.x_m * f.x_m + f.y_m * f.y_m;
-  constexpr float kNearer = 1.0F - image::kSameRange, kFarther = 1.0F + image::kSameRange;
-  const float least2 = kNearer * kNearer * range2, most2 = kFarther * kFarther * range2;
+  const float nearer = 1.0F - image::kSameRange, farther = 1.0F + image::kSameRange;
+  const float least2 = nearer * nearer * range2, most2 = farther * farther * range2;
   const auto rows = static_cast<std::size_t>(beams_.ring_count);
   const std::size_t lowest = f.ring - std::min<std::size_t>(f.ring, 1);
   const std::size_t highest = std::min<std::size_t>(f.ring + 1U, rows - 1);
@@ -32,7 +32,9 @@ bool FeatureImage::is_isolated(const Feature& f) const {
   const int first = std::max(place - beside_, 0), last = std::min(place + beside_, columns_ - 1);
   int neighbours = -1;  // it finds itself
   for (int other = first; other <= last; ++other) {
-    const auto column = static_cast<std::size_t>(column_at(other));
+    const int unwrapped = sweep_.first_column + other;
+    const auto column =
+        static_cast<std::size_t>(unwrapped < columns_ ? unwrapped : unwrapped - columns_);
     for (std::size_t k = lowest; k <= highest; ++k) {
       if ((filled_[column][k / 64] >> (k % 64) & 1U) == 0) continue;
       const Pixel& p = pixels_[column * rows + k];

@@ -93,9 +93,4 @@ int FeatureImage::place_of(int column) const {
   return place < 0 ? place + columns_ : place;
 }
 
-int FeatureImage::column_at(int place) const {
-  const int column = sweep_.first_column + place;
-  return column < columns_ ? column : column - columns_;
-}
-
 }  // namespace lilo::core

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/image/selection.hpp"
 
-#include "core/constants.hpp"
+#include "core/image/constants.hpp"
 #include "core/scan.hpp"
 
 #include <algorithm>

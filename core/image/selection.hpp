@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/constants.hpp"
 #include "core/feature.hpp"
+#include "core/image/constants.hpp"
 
 #include <array>
 #include <cstdint>
