@@ -4,10 +4,10 @@
 
 #include "core/map/cell_map.hpp"
 #include "tests/core/analytic_scene.hpp"
+#include "tests/core/image_returns.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -22,12 +22,10 @@
 namespace lilo {
 namespace {
 
-const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
+using test::azimuth_of;
+using test::return_at;
 
-/// The middle of a column of an image so many wide.
-double azimuth_of(int column, int columns) {
-  return std::numbers::pi * (1.0 - 2.0 * (column + 0.5) / columns);
-}
+const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
 
 Eigen::Vector3d key_of(const Feature& f) {
   return Eigen::Vector3f(f.x_m, f.y_m, f.z_m).cast<double>();
@@ -35,16 +33,6 @@ Eigen::Vector3d key_of(const Feature& f) {
 
 Eigen::Vector3d reach_of(const Feature& f) {
   return Eigen::Vector3f(f.dx_m, f.dy_m, f.dz_m).cast<double>();
-}
-
-/// Where a ring meets what stands so far away.
-Return return_at(const BeamTable& beams, std::uint8_t ring, double azimuth_rad, double flat_m) {
-  const double up = std::tan(static_cast<double>(beams.elevation_rad[ring]));
-  return {.x_m = static_cast<float>(flat_m * std::cos(azimuth_rad)),
-          .y_m = static_cast<float>(flat_m * std::sin(azimuth_rad)),
-          .z_m = static_cast<float>(flat_m * up),
-          .azimuth_rad = static_cast<float>(azimuth_rad),
-          .ring = ring};
 }
 
 TEST(FeatureImage, TellsGroundFromWalls) {
@@ -238,197 +226,14 @@ TEST(FeatureImage, WaitsForTheColumnBeside) {
   }
 }
 
-/// A part of the rays meet a drop 1 to 12 m away, unless something is nearer. Such returns have a
-/// negative stamp.
-void add_drops(Scan& scan, double part, std::mt19937& rng) {
-  std::uniform_real_distribution<double> chance, range_m(1.0, 12.0);
-  for (Return& r : scan.returns) {
-    const auto stretch =
-        static_cast<float>(range_m(rng)) / std::max(1.0F, std::hypot(r.x_m, r.y_m, r.z_m));
-    if (chance(rng) >= part || stretch >= 1.0F) continue;
-    r = {.x_m = r.x_m * stretch,
-         .y_m = r.y_m * stretch,
-         .z_m = r.z_m * stretch,
-         .azimuth_rad = r.azimuth_rad,
-         .t_ns = -1,
-         .ring = r.ring};
-  }
-}
-
-/// Features of drops and of other returns.
-std::array<int, 2> drops_and_others(const std::vector<Feature>& features, const Scan& scan) {
-  std::set<std::array<float, 3>> drops;
-  for (const Return& r : scan.returns) {
-    if (r.t_ns < 0) drops.insert({r.x_m, r.y_m, r.z_m});
-  }
-  std::array<int, 2> count{};
-  for (const Feature& f : features) ++count[drops.contains({f.x_m, f.y_m, f.z_m}) ? 0 : 1];
-  return count;
-}
-
-/// A square of 80 m with four poles.
-test::Scene square() {
-  test::Scene scene = test::yard();
-  for (test::Plane& plane : scene.planes) {
-    if (plane.normal.z() == 0.0) plane.offset_m = -40.0;
-  }
-  return scene;
-}
-
-// A tenth of the rays meet a drop, as in dense fog. Walls, ground and poles stay, but for that
-// tenth.
-TEST(FeatureImage, LeavesOutDropsWhereTheyAreMany) {
-  for (const int columns : {720, 1024, 2304}) {
-    std::mt19937 rng(1);
-    Scan scan = test::still_scan_of(square(), k16, {});
-    core::FeatureImage clear(columns, {}), image(columns, {});
-    const auto of_clear = static_cast<double>(clear.build(scan).size());
-    add_drops(scan, 0.1, rng);
-    const auto offered = std::count_if(scan.returns.begin(), scan.returns.end(),
-                                       [](const Return& r) { return r.t_ns < 0; });
-    const auto [drops, others] = drops_and_others(image.build(scan), scan);
-    EXPECT_LT(drops, offered / 10) << columns << " columns, of " << offered;
-    EXPECT_GT(others, 0.8 * of_clear) << columns << " columns, of " << of_clear;
-  }
-}
-
-// A few single returns are twigs and wires.
-TEST(FeatureImage, KeepsSingleReturnsInClearAir) {
-  std::mt19937 rng(1);
-  Scan scan = test::still_scan_of(square(), k16, {});
-  add_drops(scan, 0.003, rng);
-  core::FeatureImage image(1024, {});
-  EXPECT_GT(drops_and_others(image.build(scan), scan)[0], 30);
-}
-
-/// Returns of one ring in every 16th column of 2048, so many in a row, and the first ones.
-constexpr int kManyColumns = 2048;
-Scan apart(int count, double range_m, int in_a_row = 1) {
-  Scan scan;
-  scan.beams = k16;
-  scan.end_ns = 100'000'000;
-  for (int k = 0; k < count * in_a_row; ++k) {
-    const int column = 16 * (k / in_a_row) + k % in_a_row;
-    scan.returns.push_back(return_at(k16, 9, azimuth_of(column, kManyColumns), range_m));
-  }
-  return scan;
-}
-
-void append(Scan& scan, const Scan& more, int from_ring) {
-  for (Return r : more.returns) {
-    const double azimuth_rad = static_cast<double>(r.azimuth_rad);
-    const auto ring = static_cast<std::uint8_t>(from_ring);
-    const double flat_m = static_cast<double>(std::hypot(r.x_m, r.y_m));
-    scan.returns.push_back(return_at(k16, ring, azimuth_rad, flat_m));
-  }
-}
-
-TEST(FeatureImage, LeavesOutIsolatedReturnsFromAHundredOn) {
-  core::FeatureImage image(kManyColumns, {});
-  EXPECT_EQ(image.build(apart(100, 10.0)).size(), 100U);
-  EXPECT_EQ(image.build(apart(101, 10.0)).size(), 0U);
-  EXPECT_EQ(image.build(apart(101, 31.0)).size(), 101U) << "no drop is seen from there";
-  Scan near_and_far = apart(101, 29.0);
-  append(near_and_far, apart(50, 31.0), 12);
-  EXPECT_EQ(image.build(near_and_far).size(), 50U) << "those 31 m off";
-  EXPECT_EQ(image.build(apart(60, 10.0)).size(), 60U);
-  EXPECT_EQ(image.build(apart(60, 10.0)).size(), 60U) << "nothing is left of the scan before";
-}
-
-// Beside a wall of one ring.
-TEST(FeatureImage, LeavesOutIsolatedReturnsIfTheyAreAFifth) {
-  core::FeatureImage image(kManyColumns, {});
-  for (const int wall : {400, 500}) {
-    Scan scan = apart(110, 10.0);
-    append(scan, apart(wall / 16, 10.0, 16), 13);
-    const std::size_t expected = wall == 400 ? 400U : 496U + 110U;
-    EXPECT_EQ(image.build(scan).size(), expected) << wall;
-  }
-}
-
-// A return and one to either side of it. The scan may begin within one of the 101 groups.
-TEST(FeatureImage, NeighboursAreUpToThreeColumnsOf2048AndOneRingAway) {
-  core::FeatureImage image(kManyColumns, {});
-  const auto with_two_more = [&](int aside, int up, double farther) {
-    Scan scan = apart(101, 10.0);
-    for (int k = 0; k < 101; ++k) {
-      for (const int side : {-1, 1}) {
-        const double azimuth_rad = azimuth_of(16 * k + 4 + side * aside, kManyColumns);
-        const auto ring = static_cast<std::uint8_t>(9 + up);
-        scan.returns.push_back(return_at(k16, ring, azimuth_rad, 10.0 * farther));
-      }
-      scan.returns[static_cast<std::size_t>(k)] =
-          return_at(k16, 9, azimuth_of(16 * k + 4, kManyColumns), 10.0);
-    }
-    int of_middle = 0;
-    for (const Feature& f : image.build(scan)) {
-      if ((f.column - 4) % 16 == 0 && f.ring == 9) ++of_middle;
-    }
-    return of_middle;
-  };
-  EXPECT_GE(with_two_more(3, 0, 1.09), 100);
-  EXPECT_EQ(with_two_more(4, 0, 1.09), 0);
-  EXPECT_GE(with_two_more(3, 1, 1.09), 100);
-  EXPECT_EQ(with_two_more(3, 2, 1.09), 0);
-  EXPECT_EQ(with_two_more(3, 0, 1.11), 0);
-  EXPECT_GE(with_two_more(3, 0, 0.91), 100);
-  EXPECT_EQ(with_two_more(3, 0, 0.89), 0);
-}
-
-// However late the neighbours of an isolated return come, it is not counted as isolated.
-TEST(FeatureImage, WaitsForNeighbours) {
-  core::FeatureImage image(kManyColumns, {});
-  for (int front = 1000; front < 1016; ++front) {
-    for (int beside = 0; beside < 16 * 8; ++beside) {
-      Scan scan = apart(101, 10.0);
-      const auto far = std::find_if(scan.returns.begin(), scan.returns.end(), [&](const Return& r) {
-        return static_cast<double>(r.azimuth_rad) < azimuth_of(front, kManyColumns);
-      });
-      const auto at = far - scan.returns.begin();
-      const int column = front - 64 - beside;
-      for (const int k : {0, 1}) {
-        const double azimuth_rad = azimuth_of(column + k, kManyColumns);
-        scan.returns.insert(scan.returns.begin() + at + k, return_at(k16, 9, azimuth_rad, 10.0));
-      }
-      scan.returns.insert(scan.returns.begin() + at,
-                          return_at(k16, 14, azimuth_of(front, kManyColumns), 50.0));
-      image.begin(k16);
-      image.add(std::span(scan.returns).first(static_cast<std::size_t>(at) + 1));
-      image.add(std::span(scan.returns).subspan(static_cast<std::size_t>(at) + 1));
-      const std::size_t in_parts = image.finish(scan).size();
-      ASSERT_EQ(in_parts, image.build(scan).size()) << front << " " << column;
-    }
-  }
-}
-
 TEST(FeatureImage, FeaturesHaveTheirColumn) {
-  core::FeatureImage image(kManyColumns, {});
+  constexpr int kColumns = 2048;
+  core::FeatureImage image(kColumns, {});
   for (const Feature& f : image.build(test::still_scan_of(test::yard(), k16, {}))) {
     const double azimuth_rad = std::atan2(static_cast<double>(f.y_m), static_cast<double>(f.x_m));
-    const double off_rad = azimuth_rad - azimuth_of(f.column, kManyColumns);
+    const double off_rad = azimuth_rad - azimuth_of(f.column, kColumns);
     ASSERT_LT(std::abs(std::remainder(off_rad, 2.0 * std::numbers::pi)), 0.0017) << f.column;
   }
-}
-
-// A post as wide as one firing, in fog.
-TEST(FeatureImage, KeepsAThinPostAmongDrops) {
-  constexpr int kColumns = 360;
-  std::mt19937 rng(1);
-  test::Scene plain;
-  plain.planes = {{{0.0, 0.0, 1.0}, -1.5}};
-  Scan scan = test::still_scan_of(plain, test::even_beams(16, -15.0, 0.0), {});
-  add_drops(scan, 0.3, rng);
-  std::erase_if(scan.returns,
-                [](const Return& r) { return std::abs(r.azimuth_rad - 1.0F) < 0.1F; });
-  for (std::uint8_t ring = 0; ring < 16; ++ring) {
-    scan.returns.push_back(return_at(scan.beams, ring, 1.0, 8.0));
-  }
-  core::FeatureImage image(kColumns, {});
-  int of_post = 0;
-  for (const Feature& f : image.build(scan)) {
-    if (std::abs(std::atan2(f.y_m, f.x_m) - 1.0F) < 0.05F) ++of_post;
-  }
-  EXPECT_EQ(of_post, 14);  // the end rings have one neighbour
 }
 
 // Against a loop over them one by one; with 64 rings there are more returns than pixels.
