@@ -282,6 +282,8 @@ inline constexpr double kFirstPart = 0.5, kLeastPart = 0.25;
 /// Scans after which a stationary start is checked again.
 inline constexpr std::size_t kScansToRecheck = 4;
 
+/// In rooms, and while the map is young, keyframes are so much of keyframe_m apart.
+inline constexpr double kCloseKeyframes = 0.35;
 /// Keyframes of a young map, which may know too little.
 inline constexpr int kYoungMap = 5;
 /// Part of the features that a young map must match, or it gets another keyframe.

@@ -45,6 +45,7 @@ bool Initializer::must_begin_again(const ScanTiming& scan, std::size_t feature_c
 bool Initializer::add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
                       LocalOdometry& local) {
   Remembered& one = scans_[count_++];
+  one.is_room = scan.is_room;
   one.levels = scan.levels;
   one.timing = scan.timing;
   one.feature_count = all.size();
@@ -163,9 +164,8 @@ void Initializer::replay(Start start, LocalOdometry& local) {
     }
     local.accept(scans_[k].timing, solution);
     note_track(k, solution.trajectory.at(0.0), solution.trajectory.end());
-    const Observation scan{.timing = scans_[k].timing,
-                           .is_room = true,  // outside rooms, for_map has nothing overhead
-                           .levels = scans_[k].levels};
+    const Observation scan{
+        .timing = scans_[k].timing, .is_room = scans_[k].is_room, .levels = scans_[k].levels};
     local.grow_map(scan, scans_[k].for_map, solution, MapUse::keyframe);
   }
 }

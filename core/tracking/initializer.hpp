@@ -59,6 +59,7 @@ class Initializer {
     ScanTiming timing;
     std::size_t feature_count = 0;  ///< before selection
     std::vector<Feature> for_map, selected;
+    bool is_room = false;
     Levels levels = Levels::from_whole;  ///< of the map
   };
   /// A motion to begin with, and the prior of its speed along the ground.

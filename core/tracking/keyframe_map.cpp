@@ -66,7 +66,7 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
     insert_held();
   }
   if (scan.use != MapUse::keyframe || !is_due(scan)) return false;
-  hold(scan.features, scan.with_overhead);
+  hold(scan.features, scan.is_room);
   held_.trajectory = scan.solution.trajectory;
   held_.end_ns = scan.timing.end_ns;
   held_.finest_level = scan.finest_level;
@@ -84,17 +84,19 @@ bool KeyframeMap::is_due(const AlignedScan& scan) const {
   const Solution& solution = scan.solution;
   const bool matched_enough = solution.matched >= tracking::kMatchedEnough * solution.looked_up;
   if (keyframes_ < tracking::kYoungMap && !matched_enough) return true;
+  const bool close = scan.is_room || keyframes_ < tracking::kYoungMap;
+  const double apart_m = (close ? tracking::kCloseKeyframes : 1.0) * config_.keyframe_m;
   const Pose moved_by = T_odom_keyframe_.inverse() * scan.T_odom_sensor;
-  return moved_by.translation_m.norm() >= config_.keyframe_m ||
+  return moved_by.translation_m.norm() >= apart_m ||
          so3_log(moved_by.rotation).norm() >= config_.keyframe_rad;
 }
 
-void KeyframeMap::hold(const std::vector<Feature>& features, bool with_overhead) {
+void KeyframeMap::hold(const std::vector<Feature>& features, bool is_room) {
   // In an abrupt turn after the start, near points hold the pose. Later the near cells are full,
   // and far points hold the attitude.
   const Evenly evenly = keyframes_ < tracking::kYoungMap ? Evenly::in_image : Evenly::along_rings;
   thin_out(features, static_cast<std::size_t>(config_.map_features), evenly, held_.features,
-           with_overhead);
+           is_room);
   held_.sensitivity = sensitivity_;
   held_.is_waiting = true;
 }

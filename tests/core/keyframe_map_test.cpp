@@ -9,6 +9,8 @@ namespace lilo::core {
 namespace {
 
 constexpr int kEnough = 6;  // keyframes after which the map is no longer filled at once
+constexpr double kApart_m = 0.85;
+constexpr double kFilled_m = kApart_m * (kEnough - 1);  // place of the last one of them
 
 Solution solution_at(const Pose& T_begin, int matched = 1000) {
   Solution solution;
@@ -22,16 +24,16 @@ Solution solution_at(const Pose& T_begin, int matched = 1000) {
 class KeyframeMapTest : public testing::Test {
  protected:
   /// The yard from `x_m`, as the scan after the last one.
-  bool grow(double x_m, MapUse use = MapUse::keyframe, int matched = 1000) {
+  bool grow(double x_m, MapUse use = MapUse::keyframe, int matched = 1000, bool is_room = false) {
     Pose T{Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}};
     const std::uint64_t index = count_++;
     const test::ObservedScan scan(
         test::yard(), [&](double) { return T; }, index);
-    return map_.grow(
-        {scan.timing(), scan.features(), solution_at(T, matched), T, use, LocalMaps::kWhole});
+    return map_.grow({scan.timing(), scan.features(), solution_at(T, matched), T, use,
+                      LocalMaps::kWhole, is_room});
   }
   void fill() {
-    for (int k = 0; k < kEnough; ++k) grow(0.5 * k);
+    for (int k = 0; k < kEnough; ++k) grow(kApart_m * k);
   }
 
   KeyframeMap map_{DefaultConfig{}};
@@ -47,11 +49,26 @@ TEST_F(KeyframeMapTest, TakesTheFirstScan) {
 TEST_F(KeyframeMapTest, GrowsWhenTheSensorHasMoved) {
   fill();
   const int before = map_.keyframes();
-  const double at_m = 0.5 * (kEnough - 1);
-  EXPECT_FALSE(grow(at_m + 0.1));
-  EXPECT_FALSE(grow(at_m + 0.2));
-  EXPECT_TRUE(grow(at_m + 0.35));
+  EXPECT_FALSE(grow(kFilled_m + 0.35));
+  EXPECT_FALSE(grow(kFilled_m + 0.75));
+  EXPECT_TRUE(grow(kFilled_m + 0.85));
   EXPECT_EQ(map_.keyframes(), before + 1);
+}
+
+TEST_F(KeyframeMapTest, GrowsSoonerInRooms) {
+  fill();
+  EXPECT_FALSE(grow(kFilled_m + 0.25, MapUse::keyframe, 1000, true));
+  EXPECT_FALSE(grow(kFilled_m + 0.35, MapUse::keyframe, 1000, false));
+  EXPECT_TRUE(grow(kFilled_m + 0.35, MapUse::keyframe, 1000, true));
+}
+
+TEST_F(KeyframeMapTest, GrowsSoonerWhileItIsYoung) {
+  EXPECT_TRUE(grow(0.0));
+  for (int k = 1; k < 5; ++k) {
+    EXPECT_FALSE(grow(0.35 * k - 0.1)) << k;
+    EXPECT_TRUE(grow(0.35 * k)) << k;
+  }
+  EXPECT_FALSE(grow(0.35 * 5));
 }
 
 TEST_F(KeyframeMapTest, OfAStandingSensorGrowsWhileItKnowsTooLittle) {
@@ -88,11 +105,11 @@ TEST_F(KeyframeMapTest, TheNextScanPutsTheEndOfAKeyframeRight) {
     Pose T;
     for (int k = 0; k < kEnough; ++k) {  // far away and forgotten: what counts is the last
       const test::ObservedScan scan({}, still, static_cast<std::uint64_t>(k));
-      T.translation_m.x() = 0.5 * k;
+      T.translation_m.x() = kApart_m * k;
       map.grow({scan.timing(), scan.features(), solution_at(T), T});
     }
     const test::ObservedScan held(test::yard(), still, kEnough);
-    T.translation_m.x() += 0.5;
+    T.translation_m.x() += kApart_m;
     map.grow({held.timing(), held.features(), solution_at(T), T});
     const test::ObservedScan next(test::yard(), still, follows ? kEnough + 1 : kEnough + 5);
     Solution solution = solution_at(T);
@@ -156,7 +173,7 @@ TEST_F(KeyframeMapTest, WithoutARigidMotionSensitivitiesAreThoseOfPointsAlone) {
     if (is_last) map_.subtract_sensitivity(rigid);
     map_.set_sensitivity(is_last ? alone : with_path);
     other.set_sensitivity(alone);
-    Pose T{Eigen::Quaterniond::Identity(), {0.5 * k, 0.0, 0.0}};
+    Pose T{Eigen::Quaterniond::Identity(), {kApart_m * k, 0.0, 0.0}};
     const test::ObservedScan scan(
         test::yard(), [&](double) { return T; }, static_cast<std::uint64_t>(k));
     for (KeyframeMap* map : {&map_, &other}) {
