@@ -53,13 +53,12 @@ std::vector<Key> default_profile_keys() {
            kRestart,
            "Size of a map cell; a surface is fitted over three of them. Smaller indoors, with a "
            "smaller map_radius_m."),
-      real(
-          "odometry.default.keyframe_m", LILO_MEMBER(odometry.default_profile.keyframe_m), 0.01,
-          10.0, "m", kRestart,
-          "The map grows when the sensor has moved so far since it last grew. In rooms, and at the "
-          "start, it does after 0.35 of that."),
+      real("odometry.default.keyframe_m", LILO_MEMBER(odometry.default_profile.keyframe_m), 0.01,
+           10.0, "m", kRestart,
+           "The map grows when the sensor has moved so far since it last grew. In rooms, and the "
+           "first five times, 0.35 of that is enough."),
       angle("odometry.default.keyframe_deg", LILO_MEMBER(odometry.default_profile.keyframe_rad),
-            0.1, 45.0, kRestart, "The same for turning."),
+            0.1, 45.0, kRestart, "It also grows when the sensor has turned so far."),
       real("odometry.default.noise_m", LILO_MEMBER(odometry.default_profile.noise_m), 0.001, 0.2,
            "m", kRestart, "Range noise of the sensor, 1 sigma."),
       boolean("odometry.default.calibrate_beams",

@@ -282,7 +282,8 @@ inline constexpr double kFirstPart = 0.5, kLeastPart = 0.25;
 /// Scans after which a stationary start is checked again.
 inline constexpr std::size_t kScansToRecheck = 4;
 
-/// In rooms, and while the map is young, keyframes are so much of keyframe_m apart.
+/// Part of keyframe_m that is enough in rooms and while the map is young. Range: 0.3 to 0.35; with
+/// 0.4 one of 13 drives through rooms was lost.
 inline constexpr double kCloseKeyframes = 0.35;
 /// Keyframes of a young map, which may know too little.
 inline constexpr int kYoungMap = 5;

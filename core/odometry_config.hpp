@@ -69,7 +69,8 @@ struct DefaultConfig {
   double cell_m = 0.5;            ///< width of a cell; a distribution spans three of them
   int map_cells = 80000;          ///< fine cells of each kind, which bounds the memory
   double map_radius_m = 100.0;    ///< farther cells are forgotten
-  double keyframe_m = 0.8;        ///< the map grows when the sensor has moved so far
+  double keyframe_m = 0.8;        ///< the map grows when the sensor has moved so far; in rooms
+                                  ///< and at first kCloseKeyframes of it is enough
   double keyframe_rad = 2.0 * std::numbers::pi / 180.0;  ///< or turned so far
   double noise_m = 0.015;                                ///< 1 sigma of a return across a surface
   double ground_kernel = 1.5;     ///< Cauchy scale in sigmas of the map: ground is rough

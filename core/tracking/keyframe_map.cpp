@@ -48,7 +48,7 @@ void KeyframeMap::clear() {
 void KeyframeMap::begin(const std::vector<Feature>& features, const Trajectory& trajectory,
                         std::size_t finest_level) {
   clear();
-  hold(features, true);
+  hold(features, true);  // outside rooms none of them is overhead
   held_.trajectory = trajectory;
   held_.finest_level = finest_level;
   insert_held();
@@ -77,7 +77,8 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
   return true;
 }
 
-/// When the sensor has moved, and while the map has too few cells with enough points, as after one
+/// When the sensor has moved: less far in rooms, where views change sooner, and while the map is
+/// young. And while it has too few cells with enough points, as after one
 /// scan in open country. A stationary sensor adds points to them.
 bool KeyframeMap::is_due(const AlignedScan& scan) const {
   if (keyframes_ == 0) return true;
@@ -91,12 +92,12 @@ bool KeyframeMap::is_due(const AlignedScan& scan) const {
          so3_log(moved_by.rotation).norm() >= config_.keyframe_rad;
 }
 
-void KeyframeMap::hold(const std::vector<Feature>& features, bool is_room) {
+void KeyframeMap::hold(const std::vector<Feature>& features, bool with_overhead) {
   // In an abrupt turn after the start, near points hold the pose. Later the near cells are full,
   // and far points hold the attitude.
   const Evenly evenly = keyframes_ < tracking::kYoungMap ? Evenly::in_image : Evenly::along_rings;
   thin_out(features, static_cast<std::size_t>(config_.map_features), evenly, held_.features,
-           is_room);
+           with_overhead);
   held_.sensitivity = sensitivity_;
   held_.is_waiting = true;
 }

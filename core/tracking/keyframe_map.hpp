@@ -30,7 +30,7 @@ struct AlignedScan {
   Pose T_odom_sensor;  ///< of its last firing
   MapUse use = MapUse::keyframe;
   std::size_t finest_level = LocalMaps::kWhole;  ///< into which its points enter
-  bool is_room = false;  ///< then keyframes are close, and what is_overhead() enters too
+  bool is_room = false;                          ///< Observation::is_room
 };
 
 /// The local map and how it grows: by keyframes, which enter it one scan late. A scan sees its own
@@ -75,7 +75,7 @@ class KeyframeMap {
     bool is_waiting = false;
   };
   [[nodiscard]] bool is_due(const AlignedScan& scan) const;
-  void hold(const std::vector<Feature>& features, bool is_room);
+  void hold(const std::vector<Feature>& features, bool with_overhead);
   void insert_held();
 
   DefaultConfig config_;

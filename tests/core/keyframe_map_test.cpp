@@ -136,7 +136,8 @@ TEST_F(KeyframeMapTest, AKeyframeEntersAtTheLevelOfItsOwnSurroundings) {
   const auto take = [&](std::size_t finest_level, MapUse use) {
     const test::ObservedScan scan(
         test::yard(), [&](double) { return T; }, count_++);
-    map_.grow({scan.timing(), scan.features(), solution_at(T), T, use, finest_level});
+    const bool is_room = finest_level == LocalMaps::kHalf;
+    map_.grow({scan.timing(), scan.features(), solution_at(T), T, use, finest_level, is_room});
   };
   const auto half_cells = [&] {
     return map_.cells().at(LocalMaps::kHalf, FeatureKind::structure).size();
