@@ -77,9 +77,9 @@ bool KeyframeMap::grow(const AlignedScan& scan) {
   return true;
 }
 
-/// When the sensor has moved: less far in rooms, where views change sooner, and while the map is
-/// young. And while it has too few cells with enough points, as after one
-/// scan in open country. A stationary sensor adds points to them.
+/// When the sensor has moved: less far in rooms and while the map is young. And while the map has
+/// too few cells with enough points, as after one scan in open country. A stationary sensor adds
+/// points to them.
 bool KeyframeMap::is_due(const AlignedScan& scan) const {
   if (keyframes_ == 0) return true;
   const Solution& solution = scan.solution;
