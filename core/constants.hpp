@@ -15,7 +15,8 @@
 /// Errors of the beams.
 namespace lilo::core::calibration {
 
-/// Radians: 1 sigma of every error before the first observation.
+/// Radians: 1 sigma of every error before the first observation, and of the common one until enough
+/// rings have seen the ground.
 inline constexpr double kSigma_rad = 1e-3;
 inline constexpr double kPriorInformation = 1.0 / (kSigma_rad * kSigma_rad);
 /// Radians below the horizon, 5 degrees: where the common error is what it is said to be.
@@ -37,13 +38,9 @@ inline constexpr double kApart_m = 0.3;
 inline constexpr double kLargest_rad = 3.0 * kSigma_rad;
 /// Radians: a smaller eccentricity is not applied. Of an exact encoder up to 0.39 mrad is found.
 inline constexpr double kSmallest_rad = 0.4e-3;
-/// Radians: a smaller common error of the elevations is not applied. Where there is none, up to so
-/// much is found with 64 beams under velosim's --real. Range: 0 to 0.5 mrad on a first run.
-inline constexpr double kSmallestCommon_rad = 0.5e-3;
-/// Sigmas from which a common error of the elevations is applied, and down to which it stays so.
-/// With 1 a park drifts 1.05 times as much with exact beams; with 2 a town 1.3 times with real
-/// ones.
-inline constexpr double kCertainSigmas = 1.5, kUncertainSigmas = 0.5;
+/// Radians, 1 sigma of the part of the common error that does not follow from the errors of single
+/// rings. Range: 0.1 to 0.3 mrad.
+inline constexpr double kShared_rad = 0.2e-3;
 /// Metres per radian: when the sensitivity of the pose exceeds this, it is subtracted from pose and
 /// map, so that floats hold the differences.
 inline constexpr float kRebase_m = 1e5F;

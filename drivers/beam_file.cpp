@@ -52,13 +52,20 @@ BeamEstimate read_yaml(const std::string& path, const YAML::Node& root) {
   read_angles(path, root, "eccentricity_mrad", beams.eccentricity_rad);
   beams.eccentricity_sigma_rad =
       angle_rad(path, root, "eccentricity_sigma_mrad", root["eccentricity_sigma_mrad"]);
-  // Files of earlier versions do not have it.
+  // Files of earlier versions do not have these.
   if (const YAML::Node common = root["common_elevation_mrad"]) {
     beams.common_elevation_rad = angle_rad(path, root, "common_elevation_mrad", common);
     beams.common_elevation_sigma_rad =
         angle_rad(path, root, "common_elevation_sigma_mrad", root["common_elevation_sigma_mrad"]);
     if (!(beams.common_elevation_sigma_rad > 0.0))
       refuse(path, root, "common_elevation_sigma_mrad: expected more than 0");
+  }
+  if (const YAML::Node common = root["common_by_path_mrad"]) {
+    beams.common_by_path_rad = angle_rad(path, root, "common_by_path_mrad", common);
+    beams.common_by_path_sigma_rad =
+        angle_rad(path, root, "common_by_path_sigma_mrad", root["common_by_path_sigma_mrad"]);
+    if (!(beams.common_by_path_sigma_rad > 0.0))
+      refuse(path, root, "common_by_path_sigma_mrad: expected more than 0");
   }
   const std::span sigmas_rad = std::span(beams.elevation_sigma_rad).first(count);
   const bool are_known =
@@ -90,7 +97,8 @@ std::string beams_yaml(const BeamEstimate& beams) {
              "its cosine and the second times its sine. The common elevation is added to all\n"
              "rings that see the ground: that of a ring 5 degrees below the horizon, and of "
              "others\n"
-             "in inverse proportion. Delete this file after a change of the sensor.")
+             "in inverse proportion. What the path alone tells of it (by_path) is not added.\n"
+             "Delete this file after a change of the sensor.")
       << YAML::Newline << YAML::BeginMap;
   out << YAML::Key << "rings" << YAML::Value << beams.ring_count;
   write_angles(out, "elevation_mrad", std::span(beams.elevation_rad).first(count));
@@ -103,6 +111,12 @@ std::string beams_yaml(const BeamEstimate& beams) {
         << beams.common_elevation_rad / kRadPerMrad;
     out << YAML::Key << "common_elevation_sigma_mrad" << YAML::Value
         << beams.common_elevation_sigma_rad / kRadPerMrad;
+  }
+  if (beams.common_by_path_sigma_rad > 0.0) {
+    out << YAML::Key << "common_by_path_mrad" << YAML::Value
+        << beams.common_by_path_rad / kRadPerMrad;
+    out << YAML::Key << "common_by_path_sigma_mrad" << YAML::Value
+        << beams.common_by_path_sigma_rad / kRadPerMrad;
   }
   out << YAML::EndMap;
   return std::string(out.c_str()) + "\n";

@@ -5,10 +5,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace lilo::core {
@@ -24,7 +24,7 @@ double kept_information(double sigma_rad) {
   return std::max(0.0, 1.0 / (believed_rad * believed_rad) - calibration::kPriorInformation);
 }
 
-/// Smaller ones are found where there is no error, and larger ones no sensor has.
+/// Smaller eccentricities are found where there is none, and larger errors no sensor has.
 bool is_plausible(double error_rad, double smallest_rad) {
   return std::abs(error_rad) >= smallest_rad && std::abs(error_rad) < calibration::kLargest_rad;
 }
@@ -35,25 +35,17 @@ constexpr double kKept = 1.0 - 1.0 / calibration::kMemory;
 /// That of the prior, over weights that are left out of a ratio.
 constexpr double kUnweightedPrior = calibration::kPriorInformation / calibration::kWeight;
 
+/// A common error of which nothing is known.
+constexpr double kUnknown_rad = 10.0 * calibration::kSigma_rad;
+constexpr CommonPrior kUnknown{.variance_rad2 = kUnknown_rad * kUnknown_rad};
+
 /// Near 1 where a ring has seen the ground.
 double known_part(double information) {
   return information / (information + calibration::kPriorInformation);
 }
 
-Eigen::Matrix3d with_prior(const Eigen::Matrix3d& information) {
-  return information + calibration::kPriorInformation * Eigen::Matrix3d::Identity();
-}
-
-double common_sigma_rad(const Eigen::Matrix3d& information) {
-  const double variance = with_prior(information).inverse()(2, 2);
-  return variance > 0.0 ? std::sqrt(variance) : sigma_of(0.0);
-}
-
-/// The errors that bend the path, in the order of the columns of a sensitivity.
-Eigen::Vector3d errors_of(const BeamCorrection& correction) {
-  const Eigen::Vector2d& eccentricity_rad = correction.eccentricity_rad;
-  return {eccentricity_rad[0], eccentricity_rad[1], correction.common_elevation_rad};
-}
+/// Of the errors that bend the path the common one is the last (kBeamErrors).
+constexpr int kCommon = kBeamErrors - 1;
 
 }  // namespace
 
@@ -63,17 +55,20 @@ void BeamCalibration::resume(const BeamEstimate& kept) {
   correction_.elevation_rad = kept.elevation_rad;
   std::transform(kept.elevation_sigma_rad.begin(), kept.elevation_sigma_rad.end(),
                  elevation_information_.begin(), kept_information);
-  Errors information = Errors::Zero();
   if (is_plausible(largest_azimuth_rad(kept), calibration::kSmallest_rad)) {
     correction_.eccentricity_rad = {kept.eccentricity_rad[0], kept.eccentricity_rad[1]};
-    information.head<2>().setConstant(kept_information(kept.eccentricity_sigma_rad));
+    const double information = kept_information(kept.eccentricity_sigma_rad);
+    information_.diagonal().head<2>().setConstant(information);
+    sum_.head<2>() = (information + calibration::kPriorInformation) * correction_.eccentricity_rad;
   }
-  if (is_plausible(kept.common_elevation_rad, calibration::kSmallestCommon_rad)) {
+  if (is_plausible(kept.common_elevation_rad, 0.0))
     correction_.common_elevation_rad = kept.common_elevation_rad;
-    information[2] = kept_information(kept.common_elevation_sigma_rad);
+  if (kept.common_by_path_sigma_rad > 0.0) {
+    const double believed_rad =
+        std::max(kept.common_by_path_sigma_rad, calibration::kKeptSigma_rad);
+    information_(kCommon, kCommon) = 1.0 / (believed_rad * believed_rad);
+    sum_[kCommon] = information_(kCommon, kCommon) * kept.common_by_path_rad;
   }
-  information_ = information.asDiagonal();
-  sum_ = (information.array() + calibration::kPriorInformation) * errors_of(correction_).array();
 }
 
 void BeamCalibration::begin_scan(const BeamTable& beams) {
@@ -95,15 +90,25 @@ BeamEstimate BeamCalibration::estimate() const {
   std::transform(elevation_information_.begin(), elevation_information_.end(),
                  out.elevation_sigma_rad.begin(), sigma_of);
   out.eccentricity_rad = {correction_.eccentricity_rad[0], correction_.eccentricity_rad[1]};
-  // One number for both: that of the direction seen worse. Nothing is known of what is not applied.
+  // One number for both axes: that of the one seen worse. Nothing is known of an eccentricity that
+  // is not applied.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> by_information(
       information_.topLeftCorner<2, 2>());
   const bool is_applied = !correction_.eccentricity_rad.isZero(0.0);
   out.eccentricity_sigma_rad =
       sigma_of(is_applied ? std::max(by_information.eigenvalues()[0], 0.0) : 0.0);
   out.common_elevation_rad = correction_.common_elevation_rad;
-  out.common_elevation_sigma_rad =
-      out.common_elevation_rad != 0.0 ? common_sigma_rad(information_) : sigma_of(0.0);
+  const auto found = found_with(common_prior_);
+  out.common_elevation_sigma_rad = found && out.common_elevation_rad != 0.0
+                                       ? std::sqrt(found->covariance_rad2(kCommon, kCommon))
+                                       : sigma_of(0.0);
+  if (const auto seen = found_with(kUnknown)) {
+    const double sigma_rad = std::sqrt(seen->covariance_rad2(kCommon, kCommon));
+    if (sigma_rad < 0.5 * kUnknown_rad && std::abs(seen->mean_rad[kCommon]) < kUnknown_rad) {
+      out.common_by_path_rad = seen->mean_rad[kCommon];
+      out.common_by_path_sigma_rad = sigma_rad;
+    }
+  }
   return out;
 }
 
@@ -119,6 +124,8 @@ void BeamCalibration::observe(const BeamEquations& scan, const BeamTable& beams,
   observe_elevations(scan, beams);
   subtract_unseen(beams);
   observe_path(scan, place_m);
+  expect_common(beams);
+  correct_path();
 }
 
 std::optional<PoseSensitivity> BeamCalibration::rebase() {
@@ -131,15 +138,15 @@ std::optional<PoseSensitivity> BeamCalibration::rebase() {
 }
 
 Matrix6d BeamCalibration::pose_covariance() const {
-  const Eigen::LDLT<Information> of_errors(with_prior(information_));
-  if (of_errors.info() != Eigen::Success || !of_errors.isPositive()) return Matrix6d::Zero();
+  const auto found = found_with(common_prior_);
+  if (!found) return Matrix6d::Zero();
   const Eigen::Vector3d place_m = last_place_m_.value_or(Eigen::Vector3d::Zero());
   const PoseSensitivity::Matrix moved =
       sensitivity_.pose.expressed_at(place_m).moved + rebased_.expressed_at(place_m).moved;
   const Eigen::Matrix<double, 6, kBeamErrors> J = moved.leftCols<kBeamErrors>().cast<double>();
   const Vector6d corrected = moved.col(kBeamErrors).cast<double>();
-  const Vector6d uncorrected = J * of_errors.solve(sum_) - corrected;
-  return J * of_errors.solve(J.transpose()) + uncorrected * uncorrected.transpose();
+  const Vector6d uncorrected = J * found->mean_rad - corrected;
+  return J * found->covariance_rad2 * J.transpose() + uncorrected * uncorrected.transpose();
 }
 
 void BeamCalibration::begin_map() {
@@ -164,8 +171,7 @@ void BeamCalibration::subtract_unseen(const BeamTable& beams) {
   Eigen::Matrix2d H = Eigen::Matrix2d::Identity();  // invertible without any information
   Eigen::Vector2d b = Eigen::Vector2d::Zero();
   const auto row = [&](std::size_t ring) {
-    const auto elevation_rad = static_cast<double>(beams.elevation_rad[ring]);
-    return Eigen::Vector2d(common_part_of(elevation_rad), elevation_rad);
+    return unseen_parts_of(static_cast<double>(beams.elevation_rad[ring]));
   };
   for (std::size_t ring = 0; ring < rings; ++ring) {
     H += elevation_information_[ring] * row(ring) * row(ring).transpose();
@@ -192,7 +198,6 @@ void BeamCalibration::observe_path(const BeamEquations& scan, const Eigen::Vecto
   of_errors.gradient -= followed.transpose() * path.pose_gradient;
   leave_out_rings(scan.rings, followed, of_pose.solve(path.pose_gradient), of_errors);
   add_path(of_errors);
-  correct_path();
 }
 
 /// Takes the ring's mean residual out of every residual: a regression, whose coefficients are those
@@ -222,21 +227,40 @@ void BeamCalibration::add_path(const ErrorEquations& errors) {
   sum_ = kKept * sum_ + calibration::kWeight * b;
 }
 
+void BeamCalibration::expect_common(const BeamTable& beams) {
+  std::array<RingError, kMaxRings> rings;
+  const auto count = static_cast<std::size_t>(beams.ring_count);
+  for (std::size_t ring = 0; ring < count; ++ring) {
+    rings[ring] = {static_cast<double>(beams.elevation_rad[ring]), correction_.elevation_rad[ring],
+                   known_part(elevation_information_[ring])};
+  }
+  common_prior_ = common_prior(std::span(rings).first(count));
+  const auto seen = found_with(kUnknown);
+  if (!common_prior_.is_known || !seen) return;
+  common_prior_ =
+      widened(common_prior_, seen->mean_rad[kCommon], seen->covariance_rad2(kCommon, kCommon));
+}
+
+std::optional<BeamCalibration::FoundErrors> BeamCalibration::found_with(
+    const CommonPrior& common) const {
+  Information prior = calibration::kPriorInformation * Information::Identity();
+  prior(kCommon, kCommon) = 1.0 / common.variance_rad2;
+  const Eigen::LDLT<Information> of_errors(information_ + prior);
+  if (of_errors.info() != Eigen::Success || !of_errors.isPositive()) return std::nullopt;
+  Errors sum = sum_;
+  sum[kCommon] += prior(kCommon, kCommon) * common.mean_rad;
+  return FoundErrors{of_errors.solve(sum), of_errors.solve(Information::Identity())};
+}
+
 void BeamCalibration::correct_path() {
-  const Eigen::LDLT<Information> of_errors(with_prior(information_));
-  if (of_errors.info() != Eigen::Success || !of_errors.isPositive()) return;
-  const Errors found_rad = of_errors.solve(sum_);
-  const bool has_eccentricity =
-      is_plausible(found_rad.head<2>().norm(), calibration::kSmallest_rad);
-  correction_.eccentricity_rad =
-      has_eccentricity ? found_rad.head<2>().eval() : Eigen::Vector2d::Zero();
-  double& common_rad = correction_.common_elevation_rad;
-  const double least_sigmas =
-      common_rad == 0.0 ? calibration::kCertainSigmas : calibration::kUncertainSigmas;
-  const bool is_certain = std::abs(found_rad[2]) > least_sigmas * common_sigma_rad(information_);
-  const bool is_applied =
-      is_certain && is_plausible(found_rad[2], calibration::kSmallestCommon_rad);
-  common_rad = is_applied ? found_rad[2] : 0.0;
+  const auto found = found_with(common_prior_);
+  if (!found) return;
+  const Eigen::Vector2d eccentricity_rad = found->mean_rad.head<2>();
+  const bool is_applied = is_plausible(eccentricity_rad.norm(), calibration::kSmallest_rad);
+  correction_.eccentricity_rad = is_applied ? eccentricity_rad : Eigen::Vector2d::Zero();
+  if (!common_prior_.is_known) return;  // what an earlier run found stays until it is
+  const double common_rad = found->mean_rad[kCommon];
+  correction_.common_elevation_rad = is_plausible(common_rad, 0.0) ? common_rad : 0.0;
 }
 
 }  // namespace lilo::core

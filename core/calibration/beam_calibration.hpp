@@ -4,6 +4,7 @@
 #include "core/calibration/beam_correction.hpp"
 #include "core/calibration/beam_equations.hpp"
 #include "core/calibration/beam_estimate.hpp"
+#include "core/calibration/common_prior.hpp"
 #include "core/pose.hpp"
 
 #include <Eigen/Core>
@@ -27,7 +28,8 @@ namespace lilo::core {
 /// its derivative by these errors, with that of its pose. The derivative of a residual is that of
 /// its point minus that of its cell. This is Gauss-Newton over all scans, in which each pose is a
 /// function of the errors. What a ring's residuals have in common is left out, as errors of single
-/// rings would be taken for these.
+/// rings would be taken for these. How large the errors of single rings are tells how large the
+/// common error may be (common_prior()).
 ///
 /// Not thread-safe; no allocation.
 class BeamCalibration {
@@ -67,6 +69,11 @@ class BeamCalibration {
   using Information = Eigen::Matrix<double, kBeamErrors, kBeamErrors>;
   using Errors = Eigen::Matrix<double, kBeamErrors, 1>;
 
+  struct FoundErrors {
+    Errors mean_rad;
+    Information covariance_rad2;
+  };
+
   void observe_elevations(const BeamEquations& scan, const BeamTable& beams);
   void subtract_unseen(const BeamTable& beams);
   void observe_path(const BeamEquations& scan, const Eigen::Vector3d& place_m);
@@ -74,6 +81,8 @@ class BeamCalibration {
                        const PathEquations::Cross& followed, const Vector6d& moved,
                        ErrorEquations& of_errors);
   void add_path(const ErrorEquations& errors);
+  void expect_common(const BeamTable& beams);
+  [[nodiscard]] std::optional<FoundErrors> found_with(const CommonPrior& common) const;
   void correct_path();
 
   int ring_count_ = 0;       // of the last scan; 0: none yet
@@ -83,6 +92,7 @@ class BeamCalibration {
   /// H and b of H x = b over all observations, x the errors without any correction.
   Information information_ = Information::Zero();
   Errors sum_ = Errors::Zero();
+  CommonPrior common_prior_;
   std::array<RingMean, kMaxRings> ring_means_{};
   ScanSensitivity sensitivity_;
   PoseSensitivity rebased_;  // what was subtracted from the pose's since the map was begun

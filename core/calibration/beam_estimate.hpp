@@ -22,6 +22,10 @@ struct BeamEstimate {
   /// inverse proportion to its elevation.
   double common_elevation_rad = 0.0;
   double common_elevation_sigma_rad = 0.0;
+  /// What the path alone tells of it, without what the errors of the rings let expect. It is not
+  /// applied by itself. Sigma 0: nothing.
+  double common_by_path_rad = 0.0;
+  double common_by_path_sigma_rad = 0.0;
 
   bool operator==(const BeamEstimate&) const = default;
 };

@@ -44,6 +44,7 @@ TEST_F(BeamFile, HoldsMilliradiansByRing) {
   EXPECT_DOUBLE_EQ(beams.eccentricity_rad[1], 1.1e-3);
   EXPECT_DOUBLE_EQ(beams.eccentricity_sigma_rad, 0.05e-3);
   EXPECT_EQ(beams.common_elevation_rad, 0.0) << "of an earlier version";
+  EXPECT_EQ(beams.common_by_path_sigma_rad, 0.0) << "of an earlier version";
 }
 
 TEST_F(BeamFile, ReadsWhatItWrites) {
@@ -57,6 +58,8 @@ TEST_F(BeamFile, ReadsWhatItWrites) {
   beams.eccentricity_sigma_rad = 5e-5;
   beams.common_elevation_rad = -4e-4;
   beams.common_elevation_sigma_rad = 6e-5;
+  beams.common_by_path_rad = -7e-4;
+  beams.common_by_path_sigma_rad = 3e-4;
   write(beams_yaml(beams));
   const BeamEstimate read = read_beams(path_);
   for (std::size_t k = 0; k < kMaxRings; ++k)
@@ -65,6 +68,8 @@ TEST_F(BeamFile, ReadsWhatItWrites) {
   EXPECT_NEAR(read.eccentricity_sigma_rad, 5e-5, 1e-12);
   EXPECT_NEAR(read.common_elevation_rad, -4e-4, 1e-12);
   EXPECT_NEAR(read.common_elevation_sigma_rad, 6e-5, 1e-12);
+  EXPECT_NEAR(read.common_by_path_rad, -7e-4, 1e-12);
+  EXPECT_NEAR(read.common_by_path_sigma_rad, 3e-4, 1e-12);
 }
 
 TEST_F(BeamFile, RefusesWhatIsNone) {
@@ -85,6 +90,9 @@ TEST_F(BeamFile, RefusesWhatIsNone) {
         {"rings: 1\nelevation_mrad: [0]\nelevation_sigma_mrad: [1]\n"
          "eccentricity_mrad: [0, 0]\neccentricity_sigma_mrad: 1\ncommon_elevation_mrad: 1",
          "common_elevation_sigma_mrad"},
+        {"rings: 1\nelevation_mrad: [0]\nelevation_sigma_mrad: [1]\n"
+         "eccentricity_mrad: [0, 0]\neccentricity_sigma_mrad: 1\ncommon_by_path_mrad: 1",
+         "common_by_path_sigma_mrad"},
         {"rings: 2\nelevation_mrad: [0]", "elevation_mrad: expected a list of 2"},
         {"rings: 1\nelevation_mrad: [nan]", "elevation_mrad"},
         {"rings: 1\nelevation_mrad: [30]", "elevation_mrad"},
