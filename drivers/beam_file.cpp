@@ -39,6 +39,17 @@ void read_angles(const std::string& path, const YAML::Node& root, const std::str
     angles_rad[k] = angle_rad(path, list, key, list[k]);
 }
 
+/// Files of earlier versions do not have it.
+void read_common(const std::string& path, const YAML::Node& root, const std::string& key,
+                 double& common_rad, double& sigma_rad) {
+  const YAML::Node common = root[key + "_mrad"];
+  if (!common) return;
+  common_rad = angle_rad(path, root, key + "_mrad", common);
+  const std::string sigma_key = key + "_sigma_mrad";
+  sigma_rad = angle_rad(path, root, sigma_key, root[sigma_key]);
+  if (!(sigma_rad > 0.0)) refuse(path, root, sigma_key + ": expected more than 0");
+}
+
 BeamEstimate read_yaml(const std::string& path, const YAML::Node& root) {
   BeamEstimate beams;
   const YAML::Node rings = root.IsMap() ? root["rings"] : YAML::Node();
@@ -52,21 +63,10 @@ BeamEstimate read_yaml(const std::string& path, const YAML::Node& root) {
   read_angles(path, root, "eccentricity_mrad", beams.eccentricity_rad);
   beams.eccentricity_sigma_rad =
       angle_rad(path, root, "eccentricity_sigma_mrad", root["eccentricity_sigma_mrad"]);
-  // Files of earlier versions do not have these.
-  if (const YAML::Node common = root["common_elevation_mrad"]) {
-    beams.common_elevation_rad = angle_rad(path, root, "common_elevation_mrad", common);
-    beams.common_elevation_sigma_rad =
-        angle_rad(path, root, "common_elevation_sigma_mrad", root["common_elevation_sigma_mrad"]);
-    if (!(beams.common_elevation_sigma_rad > 0.0))
-      refuse(path, root, "common_elevation_sigma_mrad: expected more than 0");
-  }
-  if (const YAML::Node common = root["common_by_path_mrad"]) {
-    beams.common_by_path_rad = angle_rad(path, root, "common_by_path_mrad", common);
-    beams.common_by_path_sigma_rad =
-        angle_rad(path, root, "common_by_path_sigma_mrad", root["common_by_path_sigma_mrad"]);
-    if (!(beams.common_by_path_sigma_rad > 0.0))
-      refuse(path, root, "common_by_path_sigma_mrad: expected more than 0");
-  }
+  read_common(path, root, "common_elevation", beams.common_elevation_rad,
+              beams.common_elevation_sigma_rad);
+  read_common(path, root, "common_by_path", beams.common_by_path_rad,
+              beams.common_by_path_sigma_rad);
   const std::span sigmas_rad = std::span(beams.elevation_sigma_rad).first(count);
   const bool are_known =
       std::all_of(sigmas_rad.begin(), sigmas_rad.end(), [](double s) { return s > 0.0; });
@@ -79,6 +79,12 @@ void write_angles(YAML::Emitter& out, const char* key, std::span<const double> a
   out << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginSeq;
   for (const double rad : angles_rad) out << rad / kRadPerMrad;
   out << YAML::EndSeq;
+}
+
+void write_common(YAML::Emitter& out, const std::string& key, double common_rad, double sigma_rad) {
+  if (!(sigma_rad > 0.0)) return;
+  out << YAML::Key << key + "_mrad" << YAML::Value << common_rad / kRadPerMrad;
+  out << YAML::Key << key + "_sigma_mrad" << YAML::Value << sigma_rad / kRadPerMrad;
 }
 
 }  // namespace
@@ -106,18 +112,9 @@ std::string beams_yaml(const BeamEstimate& beams) {
   write_angles(out, "eccentricity_mrad", beams.eccentricity_rad);
   out << YAML::Key << "eccentricity_sigma_mrad" << YAML::Value
       << beams.eccentricity_sigma_rad / kRadPerMrad;
-  if (beams.common_elevation_sigma_rad > 0.0) {
-    out << YAML::Key << "common_elevation_mrad" << YAML::Value
-        << beams.common_elevation_rad / kRadPerMrad;
-    out << YAML::Key << "common_elevation_sigma_mrad" << YAML::Value
-        << beams.common_elevation_sigma_rad / kRadPerMrad;
-  }
-  if (beams.common_by_path_sigma_rad > 0.0) {
-    out << YAML::Key << "common_by_path_mrad" << YAML::Value
-        << beams.common_by_path_rad / kRadPerMrad;
-    out << YAML::Key << "common_by_path_sigma_mrad" << YAML::Value
-        << beams.common_by_path_sigma_rad / kRadPerMrad;
-  }
+  write_common(out, "common_elevation", beams.common_elevation_rad,
+               beams.common_elevation_sigma_rad);
+  write_common(out, "common_by_path", beams.common_by_path_rad, beams.common_by_path_sigma_rad);
   out << YAML::EndMap;
   return std::string(out.c_str()) + "\n";
 }
