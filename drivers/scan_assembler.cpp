@@ -159,7 +159,12 @@ void ScanAssembler::add_column(const PacketDecoder& decoder, std::size_t column,
       follows_scan_ = in_scan_;
       if (in_scan_) end_scan(clock, true);
       cuts_passed_ += static_cast<std::uint64_t>((phase_ + sweep) / kTurn);
-      begin_scan(decoder, column_ns, clock);
+      // What is left of a revolution after a long gap is a fragment: no map should begin with it.
+      if (column_ns - column_ns_ <= kMaxScanNs) {
+        begin_scan(decoder, column_ns, clock);
+      } else {
+        lost_after_cut_ = 0;  // outside of scans
+      }
     }
     if (sweep >= 0.0) phase_ = phase;
   } else {

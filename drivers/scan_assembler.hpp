@@ -15,7 +15,8 @@ namespace lilo {
 
 /// Columns to scans. A scan starts with the first column at or beyond the cut azimuth and ends
 /// with the last one before it, wherever in a packet that is. Returns go straight into the sink's
-/// scan. Data before the first cut, and after a restart up to the next one, are left out.
+/// scan. Data before the first cut, and after a restart or a gap of more than half a second up to
+/// the next one, are left out.
 class ScanAssembler {
  public:
   ScanAssembler(const SensorConfig& config, Scan& target, ScanSink& sink);
