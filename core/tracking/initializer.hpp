@@ -36,8 +36,8 @@ class Initializer {
   /// Whether the sensor is assumed stationary since the second scan, which is believed at once.
   [[nodiscard]] bool assumes_stationary() const { return assumes_stationary_; }
 
-  /// Whether the next scan cannot continue the scans remembered: it saw far more than the first
-  /// one, which was a fragment, or it comes too late.
+  /// Whether the next scan cannot continue the scans remembered, so that another session begins: it
+  /// saw far more than the first one, which was a fragment, or it comes too late.
   [[nodiscard]] bool must_begin_again(const ScanTiming& scan, std::size_t feature_count,
                                       const MotionState& state) const;
   void clear();

@@ -19,6 +19,7 @@ namespace lilo::core {
 struct AlignmentHistory {
   std::int64_t end_ns = 0;   ///< last firing of the last scan that was aligned
   bool is_doubtful = false;  ///< the last scan, aligned or not, fitted much less than usual
+  bool was_covered = false;  ///< the last scan said too little: this one may be a fragment
   StructureFit fit;          ///< the usual fit
 
   /// Time from the last aligned scan to the beginning of this one. A clock that was set back counts

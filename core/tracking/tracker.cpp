@@ -63,11 +63,11 @@ Estimate Tracker::align(const Scan& scan, std::vector<Feature>& features, StageH
   // lamps of a tunnel from its lining.
   if (alignment_.weak.count > 0 && !scan_.is_room) scan_.levels = Levels::from_half;
   hook(Stage::filter);
-  if (session_.is_over) begin_session();
+  if (session_.is_over) begin_session(/*may_be_stationary=*/false);
   Prior prior = begin_scan(features);
   std::optional<Solution> solution = solve(prior);
   if (!solution) {
-    begin_session();
+    begin_session(/*may_be_stationary=*/false);
     prior = begin_scan(features);
     solution = solve(prior);
   }
@@ -111,16 +111,11 @@ void Tracker::calibrate() {
 }
 
 /// Gives the map up and begins another one where the prediction ends. The sensor is not where the
-/// map has it, and only a new map lets it track again.
-void Tracker::begin_session() {
-  const std::uint32_t restarts = session_.restarts + 1;
-  begin_map();
-  session_.restarts = restarts;
-}
-
-void Tracker::begin_map() {
+/// map has it, or how it moved since the map was begun is not known.
+void Tracker::begin_session(bool may_be_stationary) {
   session_ = {.T_odom_start = session_.T_odom_start * local_.begin_map(scan_.timing),
-              .restarts = session_.restarts};
+              .restarts = session_.restarts + 1,
+              .may_be_stationary = may_be_stationary};
   initializer_.clear();
   calibration_.begin_map();
   local_.set_sensitivity(calibration_.sensitivity());
@@ -132,7 +127,9 @@ void Tracker::begin_map() {
 /// Sets the phase, and predicts the motion of the scan.
 Prior Tracker::begin_scan(const std::vector<Feature>& features) {
   if (phase_ == Phase::starting) {
-    if (initializer_.must_begin_again(scan_.timing, features.size(), local_.state())) begin_map();
+    if (initializer_.must_begin_again(scan_.timing, features.size(), local_.state())) {
+      begin_session(session_.may_be_stationary);
+    }
     const bool was_lost = is_lost();
     const bool is_known = initializer_.add(scan_, features, was_lost, local_);
     if (!is_known) return local_.predict(scan_.timing);
@@ -153,9 +150,9 @@ Solution Tracker::align_from_prediction(const Prior& prior) {
 
 /// None where the session is to end.
 std::optional<Solution> Tracker::solve(const Prior& predicted) {
-  // A sensor that was just switched on is mostly stationary. After a map was given up, more scans
-  // must tell.
-  if (initializer_.scans() == 2) return initializer_.align_second(session_.restarts == 0, local_);
+  if (initializer_.scans() == 2) {
+    return initializer_.align_second(session_.may_be_stationary, local_);
+  }
   if (phase_ == Phase::lost && scan_.says_enough()) {
     return relocalize(local_.align(*scan_.features, predicted, scan_.levels), predicted);
   }
@@ -178,6 +175,8 @@ std::optional<Solution> Tracker::relocalize(const Solution& at_prediction, const
   const double unseen_s = history_.unseen_s(scan_.timing);
   const bool is_searchable = unseen_s <= motion::kLongestGap_s;
   if (!is_searchable && !local_.is_stationary() && !is_predicted(at_prediction)) {
+    // No map should begin with a fragment: a cover may be taken off in the middle of a revolution.
+    if (history_.was_covered) return local_.unaligned(prior);
     return std::nullopt;
   }
   const std::optional<Solution> found =
@@ -206,6 +205,7 @@ Tracker::Alignment Tracker::judge(const Solution& solution) const {
 
 void Tracker::accept(const Prior& prior) {
   const Solution& solution = alignment_.solution;
+  history_.was_covered = !scan_.says_enough();
   history_.is_doubtful =
       history_.fit.relative(solution, scan_.structure) < registration::kDoubtfulFit;
   if (alignment_.is_explained) {

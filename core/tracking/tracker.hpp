@@ -26,10 +26,10 @@ namespace lilo::core {
 ///     starting -> lost       it is known, but no scan was aligned for 0.35 s (motion::kShortGap_s)
 ///     tracking -> lost       no scan was aligned for 0.35 s
 ///     lost     -> tracking   the sensor was found in the map (Relocalizer)
-///     starting -> starting   the first scans cannot be continued: a fragment, or too long ago
 ///
 /// A new session begins with an empty map and the phase `starting`, from
 ///
+///     starting   the first scans cannot be continued: a fragment, or too long ago
 ///     any        ten scans, each with enough features, were not explained by the map
 ///     tracking   another motion explains the last scans better; or two motions fitted for ten
 ///                scans, and no longer do (MotionCheck)
@@ -71,11 +71,13 @@ class Tracker {
   struct Session {
     Pose T_odom_start;
     std::uint32_t restarts = 0;
+    /// A sensor that was just switched on is mostly stationary. After a map was given up, more
+    /// scans must tell.
+    bool may_be_stationary = true;
     bool is_over = false;       ///< the next scan begins another one
     int unexplained_scans = 0;  ///< in a row, with enough features
   };
-  void begin_session();
-  void begin_map();
+  void begin_session(bool may_be_stationary);
   /// Whether the scan judged last was not found in the map, or its motion was refuted.
   [[nodiscard]] bool is_lost() const { return alignment_.status == TrackingStatus::lost; }
   [[nodiscard]] bool is_first() const { return initializer_.scans() == 1; }
