@@ -169,6 +169,11 @@ inline constexpr double kWeakShare = 0.5;
 /// it is 0.03 to 0.1, because noise tilts the normals; elsewhere mostly 0.2 or more. Range: 0.15 to
 /// 0.25, by NEES and by the drift in tunnels.
 inline constexpr double kDeadReckonedShare = 0.15;
+/// Ratio of the second smallest to the smallest eigenvalue of the translation's information, from
+/// which a scan is degenerate. In tunnels it is mostly 600 or more, along a motorway's rails 400 or
+/// more in up to a quarter of the scans, elsewhere mostly below 100. Range: 100 to 400, by poses
+/// that are wrong and `tracking`.
+inline constexpr double kDegenerateRatio = 200.0;
 /// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
 inline constexpr double kMostlyTurns_m = 0.3;
 
@@ -268,6 +273,9 @@ inline constexpr std::size_t kMinFeatures = 100;
 inline constexpr float kRoom_m = 5.0F;
 /// Scans in a row, each with enough features, that the map does not explain: they end a session.
 inline constexpr int kScansToGiveUp = 10;
+/// Good alignments in a row that confirm a map, and others in a row after which it is not
+/// confirmed. With 5 of either, bare hills or vibration are `degraded` too often.
+inline constexpr int kScansToConfirm = 3, kScansToDoubt = 10;
 
 /// m/s, 1 sigma of a velocity near rest or near the tracked one. A motion farther off is another.
 inline constexpr double kSameVelocity_mps = 0.5;

@@ -13,8 +13,8 @@ enum class TrackingStatus : std::uint8_t {
   initializing,  ///< no map yet, or not yet sure of the first motion
   tracking,      ///< aligned with the map
   degraded,      ///< aligned, but the prediction held some direction, data were missing, at most
-                 ///< half of the usual structure fits, the solver did not converge, or the last
-                 ///< scans fit under two motions
+                 ///< half of the usual structure fits, the solver did not converge, the last
+                 ///< scans fit under two motions, or too few good alignments came in a row
   lost,          ///< not aligned: the pose is the prediction; or it was just found to be wrong
 };
 
@@ -52,6 +52,8 @@ struct Estimate {
   int weak_count = 0;
   /// Two motions fit the last scans, as between two lanes of traffic: status `degraded`.
   bool is_motion_ambiguous = false;
+  /// Good alignments followed each other (core::Confirmation). Else the status is not `tracking`.
+  bool is_confirmed = true;
 
   /// How often a new session began: the map was given up, and another one begun where the
   /// prediction ended. Only that prediction joins poses of different counts.

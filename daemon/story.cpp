@@ -46,6 +46,7 @@ void Story::note(const PoseReport& report) {
   if (e.status == TrackingStatus::lost) ++poses_.lost;
   if (!report.scan_complete) ++poses_.partial;
   if (e.is_motion_ambiguous) ++poses_.ambiguous;
+  if (!e.is_confirmed && e.status == TrackingStatus::degraded) ++poses_.unconfirmed;
   if (e.weak_count > 0 && e.weak_directions[0].from_scan < poses_.weakest_from_scan) {
     poses_.weakest_from_scan = e.weak_directions[0].from_scan;
     e.weak_directions[0].direction.cwiseAbs().maxCoeff(&poses_.weakest_axis);
@@ -188,6 +189,7 @@ std::string Story::why_degraded() const {
                       kAxes[static_cast<std::size_t>(poses_.weakest_axis)],
                       100.0 * poses_.weakest_from_scan);
   if (poses_.ambiguous > 0) why += ", another motion fits as well (traffic beside the sensor)";
+  if (poses_.unconfirmed > 0) why += ", too few good alignments in a row";
   if (poses_.partial > 0) why += fmt::format(", {} scans with holes", poses_.partial);
   return why;
 }

@@ -43,6 +43,13 @@ bool is_any_dead_reckoned(const WeakDirections& weak) {
   return std::any_of(weak.all.begin(), weak.all.begin() + weak.count, is_dead_reckoned);
 }
 
+bool is_degenerate(const Matrix6d& scan_information) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of_translation(
+      scan_information.bottomRightCorner<3, 3>(), Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d& growing = of_translation.eigenvalues();
+  return registration::kDegenerateRatio * growing[0] < growing[1];
+}
+
 DeadReckoning::DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information) {
   const WeakDirections weak =
       weak_directions(scan_information, motion_information, Eigen::Quaterniond::Identity());

@@ -28,6 +28,7 @@ Initializer::Initializer(std::size_t most_features, std::size_t most_for_map)
 
 void Initializer::clear() {
   count_ = 0;
+  assumes_stationary_ = false;
   search_.clear();
 }
 
@@ -44,6 +45,7 @@ bool Initializer::must_begin_again(const ScanTiming& scan, std::size_t feature_c
 
 bool Initializer::add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
                       LocalOdometry& local) {
+  was_replayed_ = false;
   Remembered& one = scans_[count_++];
   one.is_room = scan.is_room;
   one.levels = scan.levels;
@@ -155,6 +157,7 @@ Solution Initializer::align_second(bool may_be_stationary, LocalOdometry& local)
 
 /// Takes all scans but the newest again, as though this motion had been known.
 void Initializer::replay(Start start, LocalOdometry& local) {
+  was_replayed_ = true;
   Solution solution = refine(start, local);
   for (std::size_t k = 1; k + 1 < count_; ++k) {
     Prior prior = local.predict(scans_[k].timing);

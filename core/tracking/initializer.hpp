@@ -36,6 +36,9 @@ class Initializer {
   /// Whether the sensor is assumed stationary since the second scan, which is believed at once.
   [[nodiscard]] bool assumes_stationary() const { return assumes_stationary_; }
 
+  /// Whether the last add() began the map again with another motion.
+  [[nodiscard]] bool was_replayed() const { return was_replayed_; }
+
   /// Whether the next scan cannot continue the scans remembered, so that another session begins: it
   /// saw far more than the first one, which was a fragment, or it comes too late.
   [[nodiscard]] bool must_begin_again(const ScanTiming& scan, std::size_t feature_count,
@@ -88,6 +91,7 @@ class Initializer {
   MotionSearch search_;
   bool is_unambiguous_ = false;  // no other motion fits nearly as well
   bool assumes_stationary_ = false;
+  bool was_replayed_ = false;
   Twist assumed_;  // by the second scan
 };
 

@@ -77,6 +77,7 @@ Estimate Tracker::align(const Scan& scan, std::vector<Feature>& features, StageH
   if (!is_first() && !is_lost()) {
     alignment_.weak = local_.find_weak_directions(scan_.timing, alignment_.solution);
   }
+  confirm();
   Estimate result = estimate(scan);
   hook(Stage::align);
   return result;
@@ -120,6 +121,7 @@ void Tracker::begin_session(bool may_be_stationary) {
   calibration_.begin_map();
   local_.set_sensitivity(calibration_.sensitivity());
   motion_check_.clear();  // an ambiguity of the old map must not end the new session
+  confirmation_ = {};
   history_.fit = {};
   phase_ = Phase::starting;
 }
@@ -132,6 +134,7 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
     }
     const bool was_lost = is_lost();
     const bool is_known = initializer_.add(scan_, features, was_lost, local_);
+    if (initializer_.was_replayed()) confirmation_ = {};  // what was good was false
     if (!is_known) return local_.predict(scan_.timing);
   }
   phase_ = history_.unseen_s(scan_.timing) > motion::kShortGap_s ? Phase::lost : Phase::tracking;
@@ -197,9 +200,9 @@ Tracker::Alignment Tracker::judge(const Solution& solution) const {
     return a;
   }
   a.is_explained = is_explained(solution, fit);
+  a.is_good = solution.converged && fit > registration::kDoubtfulFit;
   if (phase_ == Phase::starting && !initializer_.assumes_stationary()) return a;  // or so it may be
-  const bool is_sure = scan_.is_complete && solution.converged && fit > registration::kDoubtfulFit;
-  a.status = is_sure ? TrackingStatus::tracking : TrackingStatus::degraded;
+  a.status = a.is_good && scan_.is_complete ? TrackingStatus::tracking : TrackingStatus::degraded;
   return a;
 }
 
@@ -267,6 +270,18 @@ void Tracker::watch_session() {
                      session_.unexplained_scans == tracking::kScansToGiveUp;
 }
 
+bool Tracker::is_partly_known() const {
+  return alignment_.weak.count > 0 || motion_check_.is_ambiguous();
+}
+
+void Tracker::confirm() {
+  const bool is_good = alignment_.is_good && !is_partly_known() &&
+                       !is_degenerate(alignment_.solution.data_information);
+  confirmation_.add(is_good);
+  // A sensor that was just switched on, and is stationary, is believed at once.
+  if (is_good && initializer_.assumes_stationary()) confirmation_.confirm();
+}
+
 Estimate Tracker::estimate(const Scan& scan) const {
   const Solution& solution = alignment_.solution;
   const LocalMaps& cells = local_.map().cells();
@@ -288,8 +303,9 @@ Estimate Tracker::estimate(const Scan& scan) const {
   e.weak_directions = weak.all;
   e.weak_count = weak.count;
   e.is_motion_ambiguous = motion_check_.is_ambiguous();
-  const bool is_partly_known = weak.count > 0 || e.is_motion_ambiguous;
-  if (is_partly_known && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
+  e.is_confirmed = confirmation_.is_confirmed();
+  const bool is_doubtful = is_partly_known() || !e.is_confirmed;
+  if (is_doubtful && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
   e.covariance = translation_first(local_.covariance());
   e.has_covariance = e.covariance.allFinite();
   e.restarts = session_.restarts;

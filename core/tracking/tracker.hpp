@@ -9,6 +9,7 @@
 #include "core/scan.hpp"
 #include "core/search/motion_check.hpp"
 #include "core/stage.hpp"
+#include "core/tracking/confirmation.hpp"
 #include "core/tracking/initializer.hpp"
 #include "core/tracking/local_odometry.hpp"
 #include "core/tracking/observation.hpp"
@@ -65,6 +66,7 @@ class Tracker {
     Solution solution;
     TrackingStatus status = TrackingStatus::initializing;  ///< before weak directions are known
     bool is_explained = true;                              ///< it may be right (is_explained())
+    bool is_good = false;                                  ///< it converged, and fits as usual
     WeakDirections weak;
   };
   /// One map and the place where it was begun.
@@ -91,6 +93,8 @@ class Tracker {
   [[nodiscard]] bool check_motion();
   void watch_session();
   void calibrate();
+  [[nodiscard]] bool is_partly_known() const;
+  void confirm();
   [[nodiscard]] Estimate estimate(const Scan& scan) const;
 
   Selection selection_;
@@ -100,6 +104,7 @@ class Tracker {
   MotionCheck motion_check_;
   BeamCalibration calibration_;
   Session session_;
+  Confirmation confirmation_;
   Phase phase_ = Phase::starting;
   bool calibrates_;
   BeamTable beams_;      // of the last scan

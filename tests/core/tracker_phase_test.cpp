@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <vector>
 
 namespace lilo::core {
@@ -72,6 +73,40 @@ TEST_F(TrackerPhase, StartsAndTracksAfterSixScansInMotion) {
   }
   EXPECT_EQ(drive(5).status, TrackingStatus::tracking);
   EXPECT_EQ(tracker_.phase(), Phase::tracking);
+}
+
+const test::Scene& tunnel() {
+  static const test::Scene scene = [] {
+    test::Scene s;
+    s.planes = {{{0.0, 0.0, 1.0}, -1.5}, {{0.0, -1.0, 0.0}, -3.0}, {{0.0, 1.0, 0.0}, -3.0}};
+    return s;
+  }();
+  return scene;
+}
+
+// How fast it moves there cannot be known. It shook before, and where the motion model says little,
+// the little that a scan tells is not weak.
+TEST_F(TrackerPhase, NeverTracksInATunnelThatItEnteredUnseen) {
+  stand_until_tracking();
+  for (std::uint64_t k = 10; k < 40; ++k) {
+    take(k,
+         {Eigen::Quaterniond::Identity(), {k % 2 == 0 ? 0.2 : 0.0, k % 3 == 0 ? 0.2 : 0.0, 0.0}});
+  }
+  std::mt19937 random(1);
+  Estimate e;
+  for (std::uint64_t k = 100; k < 140; ++k) {
+    const auto path = [&](double s) {
+      return Pose{Eigen::Quaterniond::Identity(), {2.0 * (static_cast<double>(k) + s), 0.0, 0.0}};
+    };
+    Scan scan = test::scan_of(tunnel(), test::even_beams(16, -15.0, 15.0), 900, path, k);
+    test::add_range_noise(scan, 0.012F, random);
+    e = take(scan);
+    EXPECT_NE(e.status, TrackingStatus::tracking) << k;
+  }
+  EXPECT_EQ(e.restarts, 1U);
+  EXPECT_EQ(e.status, TrackingStatus::degraded);
+  EXPECT_EQ(e.weak_count, 0) << "or this test does not show what it should";
+  EXPECT_FALSE(e.is_confirmed);
 }
 
 TEST_F(TrackerPhase, TracksInASecondSessionAfterItsStart) {

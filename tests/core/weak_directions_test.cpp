@@ -139,6 +139,22 @@ TEST(DeadReckoning, AlsoBesideOtherWeakDirections) {
   EXPECT_NE(Bend(0.2, 0.1, 100.0, 0.01).held(), Bend::kGradient) << "a rotation that is not";
 }
 
+/// Information of a translation along a direction that is none of the axes, and along two others.
+Matrix6d of_translation(double along, double across, double up) {
+  const Eigen::Matrix3d R(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()));
+  Matrix6d information = Matrix6d::Identity();
+  information.bottomRightCorner<3, 3>() =
+      R * Eigen::Vector3d(along, across, up).asDiagonal() * R.transpose();
+  return information;
+}
+
+TEST(IsDegenerate, AlongOneDirectionAlone) {
+  EXPECT_TRUE(core::is_degenerate(of_translation(1.0, 210.0, 1000.0)));
+  EXPECT_FALSE(core::is_degenerate(of_translation(1.0, 190.0, 1000.0)));
+  EXPECT_FALSE(core::is_degenerate(of_translation(1.0, 2.0, 1000.0))) << "a bare field";
+  EXPECT_FALSE(core::is_degenerate(Matrix6d::Zero()));
+}
+
 TEST(WeakDirections, AlongATunnel) {
   test::Scene tunnel;
   tunnel.planes = {{{0.0, 0.0, 1.0}, -1.5}, {{0.0, -1.0, 0.0}, -3.0}, {{0.0, 1.0, 0.0}, -3.0}};

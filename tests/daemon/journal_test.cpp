@@ -152,6 +152,18 @@ TEST_F(StoryTest, SaysThatTwoMotionsFit) {
       << degraded;
 }
 
+TEST_F(StoryTest, SaysThatTheSessionIsNotConfirmed) {
+  second();
+  poses(10, TrackingStatus::tracking);
+  second();
+  report_.estimate.is_confirmed = false;
+  poses(10, TrackingStatus::degraded);
+  const std::string degraded = second();
+  EXPECT_NE(degraded.find("degraded: 10 of 10 poses, too few good alignments in a row"),
+            std::string::npos)
+      << degraded;
+}
+
 // Motion of 0.5 m a pose; the place found lies 2 m to the left of where it would have led.
 TEST_F(StoryTest, TellsHowFarThePredictionWasWrong) {
   second();

@@ -8,7 +8,7 @@ const WORDS = { initializing: "Initializing", tracking: "Tracking", degraded: "D
 const MEANINGS = {
   initializing: "No map yet, or not sure of the first motion.",
   tracking: "Aligned with the map.",
-  degraded: "Aligned, but held to the prediction in some direction, or data were missing.",
+  degraded: "Aligned, but not surely: held to the prediction in some direction, data were missing, or it fits poorly.",
   lost: "Not aligned: the pose is the prediction alone.",
 };
 /** Of health: why there are no poses. */
