@@ -29,6 +29,10 @@ bool has_possible_velocity(const Solution& solution, const Prior& prior, double 
          motion::kImpossibleAcceleration_mps2 * (unseen_s + prior.span_s);
 }
 
+bool is_partly_known(const WeakDirections& weak, const MotionCheck& check) {
+  return weak.count > 0 || check.is_ambiguous();
+}
+
 /// Whether an alignment found too little of the scan in the map. `fit`: StructureFit::relative().
 bool matches_too_little(const Solution& solution, double fit) {
   // A number, not a part of the features: in a park a fifth of them may match in a good alignment.
@@ -134,7 +138,7 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
     }
     const bool was_lost = is_lost();
     const bool is_known = initializer_.add(scan_, features, was_lost, local_);
-    if (initializer_.was_replayed()) confirmation_ = {};  // what was good was false
+    if (initializer_.was_replayed()) confirmation_ = {};  // good with a false map
     if (!is_known) return local_.predict(scan_.timing);
   }
   phase_ = history_.unseen_s(scan_.timing) > motion::kShortGap_s ? Phase::lost : Phase::tracking;
@@ -270,12 +274,8 @@ void Tracker::watch_session() {
                      session_.unexplained_scans == tracking::kScansToGiveUp;
 }
 
-bool Tracker::is_partly_known() const {
-  return alignment_.weak.count > 0 || motion_check_.is_ambiguous();
-}
-
 void Tracker::confirm() {
-  const bool is_good = alignment_.is_good && !is_partly_known() &&
+  const bool is_good = alignment_.is_good && !is_partly_known(alignment_.weak, motion_check_) &&
                        !is_degenerate(alignment_.solution.data_information);
   confirmation_.add(is_good);
   // A sensor that was just switched on, and is stationary, is believed at once.
@@ -304,7 +304,7 @@ Estimate Tracker::estimate(const Scan& scan) const {
   e.weak_count = weak.count;
   e.is_motion_ambiguous = motion_check_.is_ambiguous();
   e.is_confirmed = confirmation_.is_confirmed();
-  const bool is_doubtful = is_partly_known() || !e.is_confirmed;
+  const bool is_doubtful = is_partly_known(weak, motion_check_) || !e.is_confirmed;
   if (is_doubtful && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
   e.covariance = translation_first(local_.covariance());
   e.has_covariance = e.covariance.allFinite();

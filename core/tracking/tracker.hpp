@@ -93,7 +93,6 @@ class Tracker {
   [[nodiscard]] bool check_motion();
   void watch_session();
   void calibrate();
-  [[nodiscard]] bool is_partly_known() const;
   void confirm();
   [[nodiscard]] Estimate estimate(const Scan& scan) const;
 

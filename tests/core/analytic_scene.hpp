@@ -54,6 +54,13 @@ struct Scene {
   }
 };
 
+/// Endless, 6 m wide, along x.
+inline Scene tunnel() {
+  Scene scene;
+  scene.planes = {{{0.0, 0.0, 1.0}, -1.5}, {{0.0, -1.0, 0.0}, -3.0}, {{0.0, 1.0, 0.0}, -3.0}};
+  return scene;
+}
+
 /// Flat ground at z = -height, walls of a rectangular yard, four poles.
 inline Scene yard(double height_m = 1.5) {
   Scene scene;

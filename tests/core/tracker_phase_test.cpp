@@ -75,15 +75,6 @@ TEST_F(TrackerPhase, StartsAndTracksAfterSixScansInMotion) {
   EXPECT_EQ(tracker_.phase(), Phase::tracking);
 }
 
-const test::Scene& tunnel() {
-  static const test::Scene scene = [] {
-    test::Scene s;
-    s.planes = {{{0.0, 0.0, 1.0}, -1.5}, {{0.0, -1.0, 0.0}, -3.0}, {{0.0, 1.0, 0.0}, -3.0}};
-    return s;
-  }();
-  return scene;
-}
-
 // How fast it moves there cannot be known. It shook before, and where the motion model says little,
 // the little that a scan tells is not weak.
 TEST_F(TrackerPhase, NeverTracksInATunnelThatItEnteredUnseen) {
@@ -98,7 +89,7 @@ TEST_F(TrackerPhase, NeverTracksInATunnelThatItEnteredUnseen) {
     const auto path = [&](double s) {
       return Pose{Eigen::Quaterniond::Identity(), {2.0 * (static_cast<double>(k) + s), 0.0, 0.0}};
     };
-    Scan scan = test::scan_of(tunnel(), test::even_beams(16, -15.0, 15.0), 900, path, k);
+    Scan scan = test::scan_of(test::tunnel(), test::even_beams(16, -15.0, 15.0), 900, path, k);
     test::add_range_noise(scan, 0.012F, random);
     e = take(scan);
     EXPECT_NE(e.status, TrackingStatus::tracking) << k;

@@ -156,9 +156,7 @@ TEST(IsDegenerate, AlongOneDirectionAlone) {
 }
 
 TEST(WeakDirections, AlongATunnel) {
-  test::Scene tunnel;
-  tunnel.planes = {{{0.0, 0.0, 1.0}, -1.5}, {{0.0, -1.0, 0.0}, -3.0}, {{0.0, 1.0, 0.0}, -3.0}};
-  const Estimate e = drive_through(tunnel);
+  const Estimate e = drive_through(test::tunnel());
   ASSERT_EQ(e.weak_count, 1);
   EXPECT_GT(std::abs(e.weak_directions[0].direction[0]), 0.99);
   EXPECT_EQ(e.status, TrackingStatus::degraded);
