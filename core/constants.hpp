@@ -102,6 +102,9 @@ inline constexpr int kTrajectoryInstants = 128;
 
 /// Seconds: span of a scan whose stamps tell none, that of 600 revolutions a minute.
 inline constexpr double kNominalSpan_s = 0.1;
+/// Seconds: over so long at least scans are compared with the motion model. Those at 600 revolutions
+/// a minute take longer.
+inline constexpr double kComparedSpan_s = 0.09;
 /// Nanoseconds from one scan to the next within which no firing is missing.
 inline constexpr std::int64_t kNextFiring_ns = 1'000'000;
 /// Seconds: shorter gaps between two firings change no information. Range: 5e-6 to 2e-5.

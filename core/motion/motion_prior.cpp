@@ -101,8 +101,9 @@ KnotInformation process_information(const Vector6d& acceleration_density, double
 }
 
 Matrix6d motion_information(const Prior& prior) {
-  const KnotInformation noise = process_information(prior.acceleration_density, prior.span_s);
-  return noise.inverse().topLeftCorner<6, 6>().inverse();
+  const double over_s = std::max(prior.span_s, motion::kComparedSpan_s);
+  const KnotInformation noise = process_information(prior.acceleration_density, over_s);
+  return prior.span_s / over_s * noise.inverse().topLeftCorner<6, 6>().inverse();
 }
 
 int segments_for(const Vector6d& acceleration_density, double span_s, int least) {

@@ -57,7 +57,10 @@ Prior inflated(Prior prior, const Vector6d& innovation);
 /// inverse of Q = [dt^3/3 Qc, dt^2/2 Qc; dt^2/2 Qc, dt Qc].
 KnotInformation process_information(const Vector6d& acceleration_density, double dt_s);
 
-/// Information of the pose at the end of a scan whose beginning is known exactly.
+/// Information of the pose at the end of a scan whose beginning is known exactly. A scan shorter
+/// than motion::kComparedSpan_s has fewer returns. It is compared with its part of that at the end
+/// of a scan of that span: over a shorter time the motion model is ever more certain, and at 1200
+/// revolutions a minute almost every scan would tell less.
 Matrix6d motion_information(const Prior& prior);
 
 /// The number of segments in a span: as many as keep the motion between two knots certain to

@@ -13,7 +13,9 @@ struct WeakDirections {
 };
 
 /// The directions along which a scan tells less of the pose than the motion model does: less than
-/// would be known of the pose at its end, had the motion been known exactly until it began.
+/// would be known of the pose at its end, had the motion been known exactly until it began. Scans
+/// shorter than motion::kComparedSpan_s are taken together: those of that span tell less than the
+/// motion model over it.
 ///
 /// Both informations are of rotation, then translation, about the sensor, along the odometry's axes
 /// (1/rad^2, 1/m^2). The generalised eigenvalues of the scan's information against that of the

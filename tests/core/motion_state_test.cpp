@@ -110,5 +110,26 @@ TEST(ObserveVelocity, IsTheUpdateOfAKalmanFilter) {
   EXPECT_LT((prior.begin_information.inverse() - P).norm(), 1e-9);
 }
 
+/// Of every axis over a scan of that span, under white noise of density 2 on acceleration.
+double motion_information_over(double span_s) {
+  Prior prior;
+  prior.span_s = span_s;
+  prior.acceleration_density = kDensity;
+  const Matrix6d information = motion_information(prior);
+  EXPECT_TRUE(information.isApprox(information(0, 0) * Matrix6d::Identity(), 1e-9));
+  return information(0, 0);
+}
+
+// Acceleration integrated twice: the variance is q T^3 / 3.
+TEST(MotionInformation, IsThatOfWhiteNoiseOnAcceleration) {
+  EXPECT_NEAR(motion_information_over(0.1), 3.0 / (2.0 * 1e-3), 1e-6);
+  EXPECT_NEAR(motion_information_over(0.2), 3.0 / (2.0 * 8e-3), 1e-6);
+}
+
+TEST(MotionInformation, OfAShortScanIsItsPart) {
+  EXPECT_NEAR(motion_information_over(0.045), 0.5 * motion_information_over(0.09), 1e-6);
+  EXPECT_NEAR(motion_information_over(0.009), 0.1 * motion_information_over(0.09), 1e-6);
+}
+
 }  // namespace
 }  // namespace lilo::core
