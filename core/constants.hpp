@@ -102,8 +102,8 @@ inline constexpr int kTrajectoryInstants = 128;
 
 /// Seconds: span of a scan whose stamps tell none, that of 600 revolutions a minute.
 inline constexpr double kNominalSpan_s = 0.1;
-/// Seconds: over so long at least scans are compared with the motion model. Those at 600 revolutions
-/// a minute take longer.
+/// Seconds: over so long at least scans are compared with the motion model. Those at 600
+/// revolutions a minute take longer.
 inline constexpr double kComparedSpan_s = 0.09;
 /// Nanoseconds from one scan to the next within which no firing is missing.
 inline constexpr std::int64_t kNextFiring_ns = 1'000'000;
@@ -279,6 +279,18 @@ inline constexpr int kScansToGiveUp = 10;
 /// Good alignments in a row that confirm a map, and others in a row after which it is not
 /// confirmed. With 5 of either, bare hills or vibration are `degraded` too often.
 inline constexpr int kScansToConfirm = 3, kScansToDoubt = 10;
+
+/// Weight of the newest scan in what tall structure says of the place.
+inline constexpr double kTallSmoothing = 0.3;
+/// Standard errors of one scan's, as though its residuals were independent, and metres, by which it
+/// places the sensor elsewhere (ranges: 0.6 to 1.2; 0.03 to 0.1 m, by poses that are wrong and
+/// `tracking`); and scans in a row after which the motion is in doubt.
+inline constexpr double kTallSigmas = 0.8, kTallOff_m = 0.05;
+inline constexpr int kTallScans = 3;
+/// Metres, 1 sigma of a place that confirms the motion. Range: 0.05 to 0.2.
+inline constexpr double kTallKnown_m = 0.1;
+/// Seconds after a doubt in which the motion must be confirmed. Range: 10 to 60.
+inline constexpr double kTraffic_s = 30.0;
 
 /// m/s, 1 sigma of a velocity near rest or near the tracked one. A motion farther off is another.
 inline constexpr double kSameVelocity_mps = 0.5;

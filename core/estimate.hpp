@@ -14,7 +14,7 @@ enum class TrackingStatus : std::uint8_t {
   tracking,      ///< aligned with the map
   degraded,      ///< aligned, but the prediction held some direction, data were missing, at most
                  ///< half of the usual structure fits, the solver did not converge, the last
-                 ///< scans fit under two motions, or too few good alignments came in a row
+                 ///< scans leave the motion in doubt, or too few good alignments came in a row
   lost,          ///< not aligned: the pose is the prediction; or it was just found to be wrong
 };
 
@@ -28,8 +28,9 @@ struct Twist {
 struct WeakDirection {
   /// Unit vector, order x y z rx ry rz (m and rad, as in `covariance`), in the sensor's frame.
   Vector6d direction = Vector6d::Zero();
-  /// Part of the information along it that came from the scan. 0: the prediction alone; 1: the scan
-  /// alone.
+  /// Part of the information along it that came from the scan, the rest being the motion model's
+  /// over the scan; of scans shorter than 0.09 s both count over that time. 0: the prediction
+  /// alone; 1: the scan alone.
   double from_scan = 0.0;
 };
 inline constexpr int kMaxWeakDirections = 6;
@@ -50,8 +51,9 @@ struct Estimate {
   /// `tracking`.
   std::array<WeakDirection, kMaxWeakDirections> weak_directions{};
   int weak_count = 0;
-  /// Two motions fit the last scans, as between two lanes of traffic: status `degraded`.
-  bool is_motion_ambiguous = false;
+  /// Two motions fit the last scans, as between two lanes of traffic, or what is taller than
+  /// vehicles moves away from its place in the map: status `degraded`.
+  bool is_motion_doubtful = false;
   /// Good alignments followed each other (core::Confirmation). Else the status is not `tracking`.
   bool is_confirmed = true;
 

@@ -107,10 +107,12 @@ void Solver::weigh_by_height(const std::vector<Feature>& features, LocalMaps& ma
   const Sums sums =
       accumulate(features, registration::kFarStride, maps, Levels::from_whole, solution);
   const double all = sums.low + sums.tall;
+  height_weights_.is_slow = true;
   if (!(all > 0.0)) return;
   const auto low = static_cast<float>(
       all / (sums.low + static_cast<double>(registration::kTallWeight) * sums.tall));
-  height_weights_ = {.low = low, .tall = registration::kTallWeight * low};
+  height_weights_.low = low;
+  height_weights_.tall = registration::kTallWeight * low;
 }
 
 float Solver::weight_by_height(const Feature& f) const {
@@ -140,6 +142,8 @@ Solver::Sums Solver::accumulate(const std::vector<Feature>& features, std::size_
   solution.inliers = sums.weights;
   solution.structure_inliers = sums.structure;
   solution.mean_square = sums.weights > 0.0 ? sums.squares / sums.weights : 0.0;
+  sums.of_tall.is_slow = height_weights_.is_slow;
+  solution.tall = sums.of_tall;
   return sums;
 }
 
@@ -156,8 +160,12 @@ void Solver::add_residual(const Correspondence& one, float kernel_scale, float d
   sums.weights += static_cast<double>(robust);
   if (!ground) {
     sums.structure += static_cast<double>(robust);
-    double& information = is_tall(*one.feature) ? sums.tall : sums.low;
-    information += static_cast<double>(robust * O.trace());
+    const bool tall = is_tall(*one.feature);
+    (tall ? sums.tall : sums.low) += static_cast<double>(robust * O.trace());
+    if (tall && height_weights_.is_slow) {
+      sums.of_tall.information += (robust * O.topLeftCorner<2, 2>()).cast<double>();
+      sums.of_tall.gradient -= (robust * Or.head<2>()).cast<double>();
+    }
   }
   sums.squares += static_cast<double>(robust * square);
   // J = [-[p]x  I] with p as turned: [p]x crosses columns from the left, its transpose rows from

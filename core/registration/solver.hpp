@@ -28,12 +28,21 @@ struct SolverConfig {
   float data_weight = static_cast<float>(DefaultConfig{}.data_weight);
 };
 
+/// What structure taller than any vehicle says of the horizontal place of a slow sensor, its
+/// attitude as aligned: H and b of H x = b, along the odometry's axes, by residuals that count as
+/// independent.
+struct TallEquations {
+  bool is_slow = false;  ///< at most registration::kMaxJamSpeed_mps; else all is zero
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();  ///< 1/m^2
+  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();     ///< 1/m
+};
+
 struct Solution {
   Trajectory trajectory;
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
   /// Of the pose by the scan alone, as though its residuals were independent.
   Matrix6d data_information = Matrix6d::Zero();
-  /// Of the pose at the end by the motion alone, had it been known exactly until the scan began.
+  /// Of the pose by the motion alone, for comparison with it (motion_information()).
   Matrix6d motion_information = Matrix6d::Zero();
   /// Variance of the pose over that by independent residuals of one sigma; by axis.
   Vector6d design_effect = Vector6d::Zero();
@@ -42,6 +51,7 @@ struct Solution {
   double inliers = 0;            ///< sum of robust weights
   double structure_inliers = 0;  ///< the same of structure alone
   double mean_square = 0.0;      ///< weighted mean of squared residuals in sigmas
+  TallEquations tall;            ///< before the last step
   int iterations = 0;
   bool converged = false;
 };
@@ -90,10 +100,12 @@ class Solver {
   /// Weights of structure by its height above the sensor.
   struct HeightWeights {
     float low = 1.0F, tall = 1.0F;
+    bool is_slow = false;  // else both are 1
   };
   struct Sums {
     double weights = 0.0, squares = 0.0, structure = 0.0;
     double low = 0.0, tall = 0.0;  // information of structure
+    TallEquations of_tall;
   };
   /// H step = b of the deviation from the predicted motion, over all knots.
   struct Equations {

@@ -29,8 +29,8 @@ bool has_possible_velocity(const Solution& solution, const Prior& prior, double 
          motion::kImpossibleAcceleration_mps2 * (unseen_s + prior.span_s);
 }
 
-bool is_partly_known(const WeakDirections& weak, const MotionCheck& check) {
-  return weak.count > 0 || check.is_ambiguous();
+bool is_motion_doubtful(const MotionCheck& check, const TallStructure& tall) {
+  return check.is_ambiguous() || tall.disagrees();
 }
 
 /// Whether an alignment found too little of the scan in the map. `fit`: StructureFit::relative().
@@ -105,7 +105,8 @@ void Tracker::update_map(const std::vector<Feature>& features, StageHook hook) {
 void Tracker::calibrate() {
   const Eigen::Vector3d& place_m = local_.state().T_odom_sensor.translation_m;
   const bool is_sure = phase_ == Phase::tracking && alignment_.solution.converged &&
-                       !scan_.is_room && !motion_check_.is_ambiguous() && !session_.is_over;
+                       !scan_.is_room && !session_.is_over &&
+                       !is_motion_doubtful(motion_check_, tall_structure_);
   if (!calibrates_ || !is_sure || !calibration_.is_due(place_m)) return;
   calibration_.observe(local_.beam_equations(*scan_.features, alignment_.solution.trajectory,
                                              calibration_.sensitivity()),
@@ -126,6 +127,7 @@ void Tracker::begin_session(bool may_be_stationary) {
   local_.set_sensitivity(calibration_.sensitivity());
   motion_check_.clear();  // an ambiguity of the old map must not end the new session
   confirmation_ = {};
+  tall_structure_.forget_scans();
   history_.fit = {};
   phase_ = Phase::starting;
 }
@@ -138,7 +140,10 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
     }
     const bool was_lost = is_lost();
     const bool is_known = initializer_.add(scan_, features, was_lost, local_);
-    if (initializer_.was_replayed()) confirmation_ = {};  // good with a false map
+    if (initializer_.was_replayed()) {  // what was found so far was found with a false map
+      confirmation_ = {};
+      tall_structure_.forget_scans();
+    }
     if (!is_known) return local_.predict(scan_.timing);
   }
   phase_ = history_.unseen_s(scan_.timing) > motion::kShortGap_s ? Phase::lost : Phase::tracking;
@@ -264,18 +269,26 @@ void Tracker::watch_session() {
   } else if (scan_.says_enough()) {
     ++session_.unexplained_scans;
   }
-  const bool refuted = check_motion();
-  if (refuted) {
+  alignment_.is_refuted = check_motion();
+  if (alignment_.is_refuted) {
     alignment_.status = TrackingStatus::lost;
   } else if (motion_check_.ambiguity_ended() && alignment_.status == TrackingStatus::tracking) {
     alignment_.status = TrackingStatus::degraded;
   }
-  session_.is_over = refuted || motion_check_.ambiguity_ended() ||
+  session_.is_over = alignment_.is_refuted || motion_check_.ambiguity_ended() ||
                      session_.unexplained_scans == tracking::kScansToGiveUp;
 }
 
 void Tracker::confirm() {
-  const bool is_good = alignment_.is_good && !is_partly_known(alignment_.weak, motion_check_) &&
+  // Few rooms are that tall, and no vehicles drive there. Before the last step of a solver that did
+  // not converge, residuals may be large.
+  const bool tells_place = !is_lost() && !scan_.is_room && alignment_.solution.converged;
+  tall_structure_.observe(tells_place ? alignment_.solution.tall : TallEquations{},
+                          motion_check_.is_ambiguous() || alignment_.is_refuted,
+                          scan_.timing.end_ns);
+  const bool is_good = alignment_.is_good && alignment_.weak.count == 0 &&
+                       !is_motion_doubtful(motion_check_, tall_structure_) &&
+                       !tall_structure_.is_missing() &&
                        !is_degenerate(alignment_.solution.data_information);
   confirmation_.add(is_good);
   // A sensor that was just switched on, and is stationary, is believed at once.
@@ -302,9 +315,9 @@ Estimate Tracker::estimate(const Scan& scan) const {
   const WeakDirections& weak = alignment_.weak;
   e.weak_directions = weak.all;
   e.weak_count = weak.count;
-  e.is_motion_ambiguous = motion_check_.is_ambiguous();
+  e.is_motion_doubtful = is_motion_doubtful(motion_check_, tall_structure_);
   e.is_confirmed = confirmation_.is_confirmed();
-  const bool is_doubtful = is_partly_known(weak, motion_check_) || !e.is_confirmed;
+  const bool is_doubtful = weak.count > 0 || e.is_motion_doubtful || !e.is_confirmed;
   if (is_doubtful && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
   e.covariance = translation_first(local_.covariance());
   e.has_covariance = e.covariance.allFinite();

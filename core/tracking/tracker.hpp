@@ -14,6 +14,7 @@
 #include "core/tracking/local_odometry.hpp"
 #include "core/tracking/observation.hpp"
 #include "core/tracking/relocalizer.hpp"
+#include "core/tracking/tall_structure.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -67,6 +68,7 @@ class Tracker {
     TrackingStatus status = TrackingStatus::initializing;  ///< before weak directions are known
     bool is_explained = true;                              ///< it may be right (is_explained())
     bool is_good = false;                                  ///< it converged, and fits as usual
+    bool is_refuted = false;                               ///< another motion fits better
     WeakDirections weak;
   };
   /// One map and the place where it was begun.
@@ -104,6 +106,7 @@ class Tracker {
   BeamCalibration calibration_;
   Session session_;
   Confirmation confirmation_;
+  TallStructure tall_structure_;
   Phase phase_ = Phase::starting;
   bool calibrates_;
   BeamTable beams_;      // of the last scan

@@ -49,5 +49,22 @@ TEST(Jam, ASensorAtRestStaysWithWhatIsTallerThanVehicles) {
   }
 }
 
+// Thin posts do not hold the sensor at rest, and it follows the vehicles, faster than 5 m/s at
+// last. The posts tell that it does.
+TEST(Jam, IsNotTrackingWhileItFollowsVehicles) {
+  constexpr double kThin_m = 0.05;
+  Odometry odometry{OdometryConfig{}};
+  double off_m = 0.0;
+  for (int k = 0; k < 70; ++k) {
+    const Scan scan = test::scan_of(
+        jam(0.1 * k, 1.0, kThin_m), test::even_beams(16, -15.0, 15.0), 900,
+        [](double) { return Pose{}; }, static_cast<std::uint64_t>(k));
+    const Estimate e = odometry.process(scan);
+    off_m = e.T_odom_sensor.translation_m.norm();
+    EXPECT_TRUE(off_m < 1.0 || e.status != TrackingStatus::tracking) << off_m << " m, scan " << k;
+  }
+  EXPECT_GT(off_m, 10.0) << "it did not follow them";
+}
+
 }  // namespace
 }  // namespace lilo::core

@@ -218,6 +218,21 @@ TEST(Solver, BelievesWhatIsTallMoreWhereTheSensorIsSlow) {
   }
 }
 
+// That the sensor did not move, whatever the weights make of it.
+TEST(Solver, TellsWhatTallStructureAloneSaysWhereTheSensorIsSlow) {
+  const std::vector<Feature> scan = walls_that_disagree(0.03, 600, 200);
+  LocalMaps maps = wall_map();
+  Solver solver({.max_iterations = 20, .structure_kernel = 100.0F}, scan.size());
+  const Solution slow = solver.solve(scan, maps, along_a_wall(4.0));
+  ASSERT_TRUE(slow.tall.is_slow);
+  const double back_m = slow.tall.gradient.x() / slow.tall.information(0, 0);
+  EXPECT_NEAR(back_m, -slow.trajectory.at(0.5).translation_m.x(), 0.002);
+  EXPECT_LT(slow.tall.information(1, 1), 0.01 * slow.tall.information(0, 0)) << "along the wall";
+  const Solution fast = solver.solve(scan, maps, along_a_wall(6.0));
+  EXPECT_FALSE(fast.tall.is_slow);
+  EXPECT_TRUE(fast.tall.information.isZero(0.0));
+}
+
 // The covariance is to be that of the same number of features.
 TEST(Solver, KeepsTheInformationOfAllStructureWhereItsHeightsAreWeighted) {
   const std::vector<Feature> scan = walls_that_disagree(0.0, 600, 200);

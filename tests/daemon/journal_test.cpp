@@ -140,15 +140,14 @@ TEST_F(StoryTest, TellsWorseAtOnceAndBetterWhenItLasts) {
   EXPECT_NE(second().find("tracking again after"), std::string::npos);
 }
 
-TEST_F(StoryTest, SaysThatTwoMotionsFit) {
+TEST_F(StoryTest, SaysThatTheMotionIsInDoubt) {
   second();
   poses(10, TrackingStatus::tracking);
   second();
-  report_.estimate.is_motion_ambiguous = true;
+  report_.estimate.is_motion_doubtful = true;
   poses(10, TrackingStatus::degraded);
   const std::string degraded = second();
-  EXPECT_NE(degraded.find("degraded: 10 of 10 poses, another motion fits as well"),
-            std::string::npos)
+  EXPECT_NE(degraded.find("degraded: 10 of 10 poses, its motion is in doubt"), std::string::npos)
       << degraded;
 }
 
