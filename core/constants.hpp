@@ -282,10 +282,11 @@ inline constexpr int kScansToConfirm = 3, kScansToDoubt = 10;
 
 /// Weight of the newest scan in what tall structure says of the place.
 inline constexpr double kTallSmoothing = 0.3;
-/// Standard errors of one scan's, as though its residuals were independent, and metres, by which it
-/// places the sensor elsewhere (ranges: 0.6 to 1.2; 0.03 to 0.1 m, by poses that are wrong and
-/// `tracking`); and scans in a row after which the motion is in doubt.
+/// It places the sensor elsewhere if it is off by more than this many standard errors and metres. A
+/// standard error is that of one scan, its residuals taken as independent. Ranges: 0.6 to 1.2; 0.03
+/// to 0.1, by poses that are wrong and `tracking`.
 inline constexpr double kTallSigmas = 0.8, kTallOff_m = 0.05;
+/// Scans in a row in which it does so before the motion is in doubt.
 inline constexpr int kTallScans = 3;
 /// Metres, 1 sigma of a place that confirms the motion. Range: 0.05 to 0.2.
 inline constexpr double kTallKnown_m = 0.1;

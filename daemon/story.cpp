@@ -45,7 +45,7 @@ void Story::note(const PoseReport& report) {
   if (e.status == TrackingStatus::degraded) ++poses_.degraded;
   if (e.status == TrackingStatus::lost) ++poses_.lost;
   if (!report.scan_complete) ++poses_.partial;
-  if (e.is_motion_doubtful) ++poses_.ambiguous;
+  if (e.is_motion_doubtful) ++poses_.doubtful;
   if (!e.is_confirmed && e.status == TrackingStatus::degraded) ++poses_.unconfirmed;
   if (e.weak_count > 0 && e.weak_directions[0].from_scan < poses_.weakest_from_scan) {
     poses_.weakest_from_scan = e.weak_directions[0].from_scan;
@@ -188,7 +188,7 @@ std::string Story::why_degraded() const {
     why = fmt::format(", {} the scan said {:.0f} % only",
                       kAxes[static_cast<std::size_t>(poses_.weakest_axis)],
                       100.0 * poses_.weakest_from_scan);
-  if (poses_.ambiguous > 0) why += ", its motion is in doubt (traffic beside the sensor)";
+  if (poses_.doubtful > 0) why += ", its motion is in doubt (traffic beside the sensor)";
   if (poses_.unconfirmed > 0) why += ", too few good alignments in a row";
   if (poses_.partial > 0) why += fmt::format(", {} scans with holes", poses_.partial);
   return why;

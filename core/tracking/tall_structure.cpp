@@ -12,10 +12,13 @@
 namespace lilo::core {
 
 void TallStructure::observe(const TallEquations& scan, bool is_doubted, std::int64_t end_ns) {
-  information_ += tracking::kTallSmoothing * (scan.information - information_);
-  gradient_ += tracking::kTallSmoothing * (scan.gradient - gradient_);
-  scans_elsewhere_ = is_elsewhere() ? scans_elsewhere_ + 1 : 0;
-  if (!scan.is_slow) forget_scans();
+  if (scan.is_slow) {
+    information_ += tracking::kTallSmoothing * (scan.information - information_);
+    gradient_ += tracking::kTallSmoothing * (scan.gradient - gradient_);
+    scans_elsewhere_ = is_elsewhere() ? scans_elsewhere_ + 1 : 0;
+  } else {
+    forget_scans();
+  }
   if (is_doubted || disagrees()) doubted_ns_ = end_ns;
   if (doubted_ns_) {
     const double since_s = seconds_between(*doubted_ns_, end_ns);
