@@ -116,6 +116,10 @@ inline constexpr double kShortGap_s = 0.35;
 /// where it was.
 inline constexpr double kLongestGap_s = 2.5;
 
+/// Seconds: a gap that is not predicted counts as one of so many at most. The clock may have been
+/// set by years.
+inline constexpr double kMostGap_s = 60.0;
+
 /// 1 sigma (m, rad) of the pose before the first scan. Range: 0.5e-4 to 2e-4.
 inline constexpr double kInitialPose = 1e-4;
 /// m/s, 1 sigma of the horizontal velocity before the first scan. Range: 10 to 40.

@@ -10,7 +10,8 @@
 /// last scan, with white noise on acceleration (Barfoot, State Estimation for Robotics, ch. 11).
 ///
 /// Process noise enters the alignment here and nowhere else; PoseUncertainty takes it for dead
-/// reckoning, and what was observed of it at the start for the first scan. ProcessNoise estimates
+/// reckoning and for gaps that are not predicted (covariance_over_gap()), and what was observed of
+/// it at the start for the first scan. ProcessNoise estimates
 /// its density from the motion found; predict() puts that into a Prior; the solver takes
 /// add_prior(), which inflates it where the motion departs from the prior, and
 /// motion_information().
@@ -24,6 +25,8 @@ struct Prior {
   Pose T_begin;
   Twist twist;
   double span_s = 0.1;
+  /// Seconds of the gap before the scan, if it is longer than motion::kLongestGap_s; else 0.
+  double unpredicted_s = 0.0;
   int segments = 1;                ///< of the trajectory, up to motion::kMaxSegments
   Knot begin_mean = Knot::Zero();  ///< of the first knot
   KnotInformation begin_information = KnotInformation::Identity();

@@ -26,6 +26,11 @@ struct MotionState {
 Prior predict(const MotionState& state, const ScanTiming& scan, const Vector6d& density,
               int least_segments);
 
+/// What may have happened in a gap that is not predicted: covariance of the motion (rotation,
+/// translation) along the odometry's axes. The sensor may have gone on at its twist: so far is one
+/// sigma. That twist is not known exactly, and acceleration was white noise (q t^3 / 3).
+Matrix6d covariance_over_gap(const MotionState& state, const Prior& prior);
+
 /// The predicted pose of the last firing.
 Pose predicted_end(const Prior& prior);
 /// The predicted state after the scan.

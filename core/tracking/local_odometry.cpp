@@ -38,6 +38,7 @@ void LocalOdometry::accept(const ScanTiming& scan, const Solution& solution) {
 }
 
 void LocalOdometry::accept_prediction(const ScanTiming& scan, const Prior& prior) {
+  uncertainty_.predict(state_, covariance_over_gap(state_, prior));
   move_to(predicted_state(prior, scan.end_ns));
 }
 

@@ -7,14 +7,54 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace lilo::core {
+namespace {
+
+Matrix6d pose_covariance(const MotionState& state) {
+  return state.information.inverse().topLeftCorner<6, 6>();
+}
+
+/// Without the directions along which a symmetric matrix is negative.
+Matrix6d positive_part(const Matrix6d& A) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(A);
+  const Matrix6d& V = solver.eigenvectors();
+  return V * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
+}
+
+/// About no axis is a rotation less known than an angle of which nothing is: pi^2 / 3.
+void limit_rotation(Matrix6d& covariance) {
+  constexpr double kUnknown_rad2 = std::numbers::pi * std::numbers::pi / 3.0;
+  for (int k = 0; k < 3; ++k) {
+    const double part = std::min(1.0, std::sqrt(kUnknown_rad2 / covariance(k, k)));
+    covariance.row(k) *= part;
+    covariance.col(k) *= part;
+  }
+}
+
+}  // namespace
 
 void PoseUncertainty::begin_map(const MotionState& state) {
   drift_.begin(covariance(state));  // the sensor's axes are the new map's
+  last_aligned_.reset();
+}
+
+void PoseUncertainty::rewind() {
+  drift_.rewind();
+  last_aligned_.reset();
+}
+
+void PoseUncertainty::predict(const MotionState& state, const Matrix6d& over_gap) {
+  if (!last_aligned_) {
+    last_aligned_ = {of_alignment(state), pose_covariance(state), Matrix6d::Zero()};
+  }
+  last_aligned_->over_gaps += over_gap;
 }
 
 void PoseUncertainty::learn(const Vector6d& design_effect, const Matrix6d& data_information) {
+  last_aligned_.reset();
   data_information_ = data_weight_ * data_information;
   mean_effect_ += tracking::kDesignEffectSmoothing *
                   (design_effect.cwiseMax(tracking::kLeastDesignEffect) - mean_effect_);
@@ -35,7 +75,7 @@ void PoseUncertainty::learn_start(const Vector6d& density, double span_s) {
 }
 
 void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {
-  drift_.inherit(of_alignment(state), state.T_odom_sensor.rotation, keyframes);
+  drift_.inherit(without_drift(state), state.T_odom_sensor.rotation, keyframes);
 }
 
 void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state,
@@ -66,7 +106,7 @@ Matrix6d PoseUncertainty::of_alignment(const MotionState& state) const {
   // as one. What is the same for longer is for Drift.
   const double unit = tracking::kScansSharingErrors * data_weight_;
   const Vector6d scale = (unit * design_effect_).cwiseSqrt();
-  Matrix6d C = state.information.inverse().topLeftCorner<6, 6>();
+  Matrix6d C = pose_covariance(state);
   const Matrix6d information = C.inverse();
   // V' C^-1 V = I, and V' D V is diagonal: the scan's share of each direction. The information of
   // all poses in the scan may be more than that of the pose at its end; then the share is 1.
@@ -79,8 +119,17 @@ Matrix6d PoseUncertainty::of_alignment(const MotionState& state) const {
   return C * (P + scale.asDiagonal() * D * scale.asDiagonal()) * C;
 }
 
+/// The design effect does not scale what predictions add.
+Matrix6d PoseUncertainty::without_drift(const MotionState& state) const {
+  if (!last_aligned_) return of_alignment(state);
+  return last_aligned_->covariance + last_aligned_->over_gaps +
+         positive_part(pose_covariance(state) - last_aligned_->of_state);
+}
+
 Matrix6d PoseUncertainty::covariance(const MotionState& state) const {
-  return in_sensor_axes(drift_.covariance() + of_alignment(state), state.T_odom_sensor.rotation);
+  Matrix6d all = drift_.covariance() + without_drift(state);
+  limit_rotation(all);
+  return in_sensor_axes(all, state.T_odom_sensor.rotation);
 }
 
 }  // namespace lilo::core

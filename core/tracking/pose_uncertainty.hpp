@@ -6,11 +6,13 @@
 #include "core/registration/weak_directions.hpp"
 #include "core/tracking/drift.hpp"
 
+#include <optional>
+
 namespace lilo::core {
 
 /// The covariance of the pose, rotation then translation. It is the covariance of the alignment
 /// with the map, in which the scan's part is scaled by how much residuals vary from azimuth to
-/// azimuth, plus that of the map's drift.
+/// azimuth, plus what predictions have added since then, plus that of the map's drift.
 class PoseUncertainty {
  public:
   /// `data_weight`: of a residual (SolverConfig).
@@ -19,7 +21,7 @@ class PoseUncertainty {
   /// Another map is begun where the sensor is.
   void begin_map(const MotionState& state);
   /// The same map is begun once more.
-  void rewind() { drift_.rewind(); }
+  void rewind();
   /// How uncertain the first scan of the map is, which lasted `span_s`: 8/135 q T^3, replacing the
   /// last call. `density`: q (rad^2/s^3, then m^2/s^3; ProcessNoise::density_at_start).
   void learn_start(const Vector6d& density, double span_s);
@@ -28,6 +30,10 @@ class PoseUncertainty {
   /// is far larger: where a turn begins within a scan, the trajectory does not fit it, and its
   /// residuals vary more with the azimuth.
   void learn(const Vector6d& design_effect, const Matrix6d& data_information);
+  /// A scan was not aligned, and the sensor is predicted from `state`. Until one is aligned the
+  /// covariance grows by as much as that of the state. `over_gap`: covariance_over_gap(), which the
+  /// state does not have.
+  void predict(const MotionState& state, const Matrix6d& over_gap);
   /// The weak directions (sensor's axes) of a scan that lasted `span_s`; `density`: process noise.
   /// Along those of which the scan tells next to nothing the motion is dead reckoned
   /// (is_dead_reckoned()).
@@ -44,7 +50,12 @@ class PoseUncertainty {
   [[nodiscard]] Matrix6d covariance(const MotionState& state) const;
 
  private:
+  /// The covariance of the last alignment and that of its state; those of all gaps since then.
+  struct LastAligned {
+    Matrix6d covariance, of_state, over_gaps;
+  };
   [[nodiscard]] Matrix6d of_alignment(const MotionState& state) const;
+  [[nodiscard]] Matrix6d without_drift(const MotionState& state) const;
 
   double data_weight_;
   Vector6d mean_effect_ = Vector6d::Constant(tracking::kLeastDesignEffect);  // of the last second
@@ -52,6 +63,7 @@ class PoseUncertainty {
   Vector6d design_effect_ = mean_effect_;
   /// Of the last scan, as the solver weights it. Before there is one, all is taken for the scan's.
   Matrix6d data_information_ = 1e12 * Matrix6d::Identity();
+  std::optional<LastAligned> last_aligned_;  // none: it is the state
   Drift drift_;
 };
 

@@ -128,6 +128,52 @@ TEST_F(LocalOdometryTest, AnotherMapBeginsWhereItsFirstScanIsPredictedToEnd) {
   for (int k = 0; k < 6; ++k) EXPECT_GE(local_.covariance()(k, k), there(k, k)) << k;
 }
 
+// At 10 m/s, looking half left. After 15 s without a scan the sensor is where it was, or 150 m on,
+// or near.
+TEST_F(LocalOdometryTest, AfterALongGapTheSensorMayBeAnywhere) {
+  const Pose half_left{so3_exp({0.0, 0.0, std::numbers::pi / 4}), {}};
+  const auto covariance_after = [&](std::int64_t first_scan) {
+    LocalOdometry local = local_;
+    local.accept(timing_of(200), aligned(half_left, ahead(10.0)));
+    local.accept_prediction(timing_of(first_scan), local.predict(timing_of(first_scan)));
+    // The next scan is a fragment, which cannot begin a map.
+    local.accept_prediction(timing_of(first_scan + 1), local.predict(timing_of(first_scan + 1)));
+    local.begin_map(timing_of(first_scan + 2));
+    return local.covariance();  // in the sensor's axes
+  };
+  const double q_m2 = DefaultConfig{}.translation_density * 15.0 * 15.0 * 15.0 / 3.0;
+  for (const std::int64_t first_scan : {351, 50}) {  // the clock may also have been set back
+    const Matrix6d after = covariance_after(first_scan);
+    EXPECT_NEAR(after(3, 3), 150.0 * 150.0 + q_m2, 0.02 * 150.0 * 150.0) << first_scan;
+    EXPECT_NEAR(after(4, 4), q_m2, 0.05 * q_m2) << first_scan;
+    EXPECT_NEAR(after(1, 1), std::numbers::pi * std::numbers::pi / 3.0, 1e-3) << first_scan;
+  }
+  EXPECT_LT(covariance_after(225)(3, 3), 30.0) << "2.4 s are predicted";
+  EXPECT_LT(covariance_after(10'000'000'000)(3, 3), 1e6) << "the clock was set by 30 years";
+}
+
+// The velocity is unknown after the first scan, whether the gap is predicted or not.
+TEST_F(LocalOdometryTest, ALongerGapAfterTheFirstScanIsNoMoreCertain) {
+  const auto sigma_after = [&](std::int64_t scan) {
+    LocalOdometry local = local_;
+    local.accept_first(timing_of(0));
+    local.begin_map(timing_of(scan));
+    return std::sqrt(local.covariance()(3, 3));
+  };
+  EXPECT_GT(sigma_after(25), 10.0);
+  EXPECT_GT(sigma_after(27), sigma_after(25));
+  EXPECT_GT(sigma_after(150), 2.0 * sigma_after(27));
+}
+
+TEST_F(LocalOdometryTest, AGapIsForgottenOnceTheSensorIsFound) {
+  local_.accept(timing_of(1), aligned({}, {}));
+  const double before = local_.covariance()(3, 3);
+  local_.accept_prediction(timing_of(152), local_.predict(timing_of(152)));
+  EXPECT_GT(local_.covariance()(3, 3), 1000.0);
+  local_.accept(timing_of(153), aligned({}, {}));
+  EXPECT_NEAR(local_.covariance()(3, 3), before, 0.5 * before);
+}
+
 TEST_F(LocalOdometryTest, RewindingGoesBackToTheEndOfTheFirstScan) {
   local_.accept(timing_of(3), aligned({kAhead, {5.0, 0.0, 0.0}}, ahead(10.0)));
   local_.rewind(timing_of(0));

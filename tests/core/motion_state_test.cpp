@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace lilo::core {
 namespace {
 
@@ -54,6 +56,31 @@ TEST(Predict, StaysWhereItWasOverALongGapOrAStepOfTheClock) {
 }
 
 // All returns are those of the last firing: the trajectory begins where the last scan ended.
+// Looking to the left at 10 m/s, with 0.1 rad/s of roll, over 4 s: 40 m along y, 0.4 rad about y.
+TEST(CovarianceOverGap, IsThatOfTheWayAtTheTwistAndOfWhiteNoise) {
+  MotionState state = driving();
+  state.T_odom_sensor.rotation = so3_exp({0.0, 0.0, std::numbers::pi / 2});
+  state.twist.angular_radps.x() = 0.1;
+  constexpr double kVelocity = 0.25;  // variance
+  state.information = KnotInformation::Identity();
+  state.information.bottomRightCorner<6, 6>() /= kVelocity;
+  const Matrix6d C = covariance_over_gap(state, predict(state, scan_after(4.0), kDensity, 2));
+  const double noise = 2.0 * 64.0 / 3.0 + 16.0 * kVelocity;
+  Vector6d diagonal = Vector6d::Constant(noise);
+  diagonal[1] += 0.4 * 0.4;
+  diagonal[4] += 40.0 * 40.0;
+  EXPECT_NEAR((C.diagonal() - diagonal).norm(), 0.0, 1e-4);
+  EXPECT_NEAR(C(1, 4), 0.4 * 40.0, 1e-4);
+  EXPECT_NEAR(C(3, 4), 0.0, 1e-4);
+}
+
+TEST(CovarianceOverGap, IsZeroWhereTheGapIsPredicted) {
+  const Prior prior = predict(driving(), scan_after(2.4), kDensity, 2);
+  EXPECT_TRUE(covariance_over_gap(driving(), prior).isZero());
+  EXPECT_GT(predict(driving(), scan_after(2.6), kDensity, 2).unpredicted_s, 2.5);
+  EXPECT_GT(predict(driving(), scan_after(-3.0), kDensity, 2).unpredicted_s, 2.5);
+}
+
 TEST(Predict, ReachesBackToTheLastScanWhereReturnsWereCompensated) {
   ScanTiming scan = scan_after(0.05);
   scan.motion_compensated = true;

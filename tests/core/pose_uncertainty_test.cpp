@@ -192,6 +192,49 @@ TEST(PoseUncertainty, AnotherMapBeginsAsUncertainAsThePoseWas) {
   EXPECT_TRUE(uncertainty.covariance(exact_state()).isApprox(at_start));
 }
 
+// Residuals that agree make an alignment more certain than its information says, not a prediction.
+TEST(PoseUncertainty, APredictionAddsAllThatTheStateLoses) {
+  const Matrix6d no_gap = Matrix6d::Zero();
+  const MotionState aligned = state_of(Vector6d::Constant(1e-6));
+  PoseUncertainty uncertainty(kDataWeight);
+  uncertainty.learn(Vector6d::Constant(kLeastDesignEffect), kAllFromScan);
+  const double before = uncertainty.covariance(aligned)(3, 3);
+  EXPECT_LT(before, 0.1 * 1e-6);
+  uncertainty.predict(aligned, no_gap);
+  const MotionState predicted = state_of(Vector6d::Constant(5e-6));
+  EXPECT_NEAR(uncertainty.covariance(predicted)(3, 3), before + 4e-6, 1e-12);
+  uncertainty.predict(predicted, no_gap);  // and the next one is not aligned either
+  const MotionState later = state_of(Vector6d::Constant(9e-6));
+  EXPECT_NEAR(uncertainty.covariance(later)(3, 3), before + 8e-6, 1e-12);
+  uncertainty.learn(Vector6d::Constant(kLeastDesignEffect), kAllFromScan);
+  EXPECT_NEAR(uncertainty.covariance(aligned)(3, 3), before, 1e-12) << "aligned again";
+  uncertainty.predict(aligned, Matrix6d::Identity());
+  EXPECT_GT(uncertainty.covariance(aligned)(3, 3), 1.0);
+  uncertainty.rewind();
+  EXPECT_NEAR(uncertainty.covariance(aligned)(3, 3), before, 1e-12) << "the same map once more";
+}
+
+TEST(PoseUncertainty, NoRotationIsLessKnownThanAnUnknownOne) {
+  PoseUncertainty uncertainty(kDataWeight);
+  const MotionState state = state_of(Vector6d::Constant(1e-6));
+  uncertainty.predict(state, six(100.0, 0.0, 1.0, 100.0, 0.0, 0.0).asDiagonal());
+  uncertainty.begin_map(state);  // and another gap after that
+  uncertainty.predict(state, six(100.0, 0.0, 0.0, 0.0, 0.0, 0.0).asDiagonal());
+  const Matrix6d after = uncertainty.covariance(state);
+  EXPECT_NEAR(after(0, 0), std::numbers::pi * std::numbers::pi / 3.0, 1e-6);
+  EXPECT_NEAR(after(2, 2), 1.0, 1e-4);
+  EXPECT_NEAR(after(3, 3), 100.0, 1e-3);
+}
+
+// The velocity is tied to the pose, so that the state's covariance falls along one direction.
+TEST(PoseUncertainty, APredictionStaysPositive) {
+  PoseUncertainty uncertainty(kDataWeight);
+  uncertainty.learn(Vector6d::Constant(kLeastDesignEffect), kAllFromScan);
+  uncertainty.predict(state_of(Vector6d::Constant(4e-6)), Matrix6d::Zero());
+  const Matrix6d after = uncertainty.covariance(state_of(six(1e-6, 9e-6, 9e-6, 1e-6, 9e-6, 9e-6)));
+  EXPECT_GT(after.diagonal().minCoeff(), 0.0);
+}
+
 // A position under white noise q on acceleration is uncertain by q t^3 / 3.
 TEST(PoseUncertainty, AnUnseenDirectionIsDeadReckoned) {
   constexpr double kShortScan_s = 0.01;
