@@ -116,8 +116,8 @@ inline constexpr double kShortGap_s = 0.35;
 /// where it was.
 inline constexpr double kLongestGap_s = 2.5;
 
-/// Seconds: a gap that is not predicted counts as one of so many at most. The clock may have been
-/// set by years.
+/// Seconds: a gap that is not predicted counts as so long at most. The clock may have been set by
+/// years.
 inline constexpr double kMostGap_s = 60.0;
 
 /// 1 sigma (m, rad) of the pose before the first scan. Range: 0.5e-4 to 2e-4.

@@ -11,10 +11,9 @@
 ///
 /// Process noise enters the alignment here and nowhere else; PoseUncertainty takes it for dead
 /// reckoning and for gaps that are not predicted (covariance_over_gap()), and what was observed of
-/// it at the start for the first scan. ProcessNoise estimates
-/// its density from the motion found; predict() puts that into a Prior; the solver takes
-/// add_prior(), which inflates it where the motion departs from the prior, and
-/// motion_information().
+/// it at the start for the first scan. ProcessNoise estimates its density from the motion found;
+/// predict() puts that into a Prior; the solver takes add_prior(), which inflates it where the
+/// motion departs from the prior, and motion_information().
 namespace lilo::core {
 
 /// J'OJ over all knots.

@@ -26,7 +26,7 @@ Prior predict(const MotionState& state, const ScanTiming& scan, const Vector6d& 
       scan.motion_compensated && since_s > 0.0 && since_s <= motion::kLongestGap_s;
   prior.span_s = reaches_back ? since_s : duration_s;
   const double unseen_s = since_s - prior.span_s;
-  // If the clock was set, by as much as it was set.
+  // A clock that was set counts as a gap of as much.
   if (std::abs(unseen_s) > motion::kLongestGap_s) prior.unpredicted_s = std::abs(unseen_s);
   const double gap_s = prior.unpredicted_s > 0.0 ? 0.0 : std::max(0.0, unseen_s);
   prior.T_begin = moved(state.T_odom_sensor, state.twist, gap_s);

@@ -75,7 +75,7 @@ void PoseUncertainty::learn_start(const Vector6d& density, double span_s) {
 }
 
 void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {
-  drift_.inherit(without_drift(state), state.T_odom_sensor.rotation, keyframes);
+  drift_.inherit(of_alignment(state), state.T_odom_sensor.rotation, keyframes);
 }
 
 void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state,

@@ -55,7 +55,6 @@ TEST(Predict, StaysWhereItWasOverALongGapOrAStepOfTheClock) {
   }
 }
 
-// All returns are those of the last firing: the trajectory begins where the last scan ended.
 // Looking to the left at 10 m/s, with 0.1 rad/s of roll, over 4 s: 40 m along y, 0.4 rad about y.
 TEST(CovarianceOverGap, IsThatOfTheWayAtTheTwistAndOfWhiteNoise) {
   MotionState state = driving();
@@ -81,6 +80,7 @@ TEST(CovarianceOverGap, IsZeroWhereTheGapIsPredicted) {
   EXPECT_GT(predict(driving(), scan_after(-3.0), kDensity, 2).unpredicted_s, 2.5);
 }
 
+// All returns are those of the last firing: the trajectory begins where the last scan ended.
 TEST(Predict, ReachesBackToTheLastScanWhereReturnsWereCompensated) {
   ScanTiming scan = scan_after(0.05);
   scan.motion_compensated = true;
