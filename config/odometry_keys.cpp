@@ -68,12 +68,12 @@ std::vector<Key> default_profile_keys() {
       real("odometry.default.roll_pitch_density",
            LILO_MEMBER(odometry.default_profile.roll_pitch_density), 0.0001, 100.0, "", kRestart,
            "Least process noise of roll and pitch: power density of the angular acceleration "
-           "(rad2/s3). More is estimated on the way."),
+           "(rad2/s3). More is estimated on the way. The pose that is sent has a tenth at least."),
       real("odometry.default.yaw_density", LILO_MEMBER(odometry.default_profile.yaw_density),
-           0.0001, 100.0, "", kRestart, "The same for yaw (rad2/s3)."),
+           0.0001, 100.0, "", kRestart, "Least process noise of yaw, likewise (rad2/s3)."),
       real("odometry.default.translation_density",
            LILO_MEMBER(odometry.default_profile.translation_density), 0.001, 1000.0, "", kRestart,
-           "The same for the velocity (m2/s3)."),
+           "Least process noise of the velocity (m2/s3). More is estimated on the way."),
   };
 }
 

@@ -135,6 +135,9 @@ inline constexpr double kNoiseSmoothing = 0.1;
 /// middles of two. Rotation (range: 8 to 16; with 32 one of 16 drives through rooms was lost) and
 /// translation (range: 1 to 8).
 inline constexpr double kFasterRotation = 16.0, kFasterTranslation = 8.0;
+/// Rotation of the pose that is reported: a further factor (range: 2 to 4), and the least density
+/// in parts of the nominal one (range: 0.01 to 0.1).
+inline constexpr double kReportedRotation = 3.0, kReportedLeast = 0.1;
 /// What one change of the velocity shows of the translation's density counts as so many times the
 /// estimate at most. Less leaves more scans under vibration `degraded`; more lets motorways slip.
 inline constexpr double kMostTranslation = 8.0;

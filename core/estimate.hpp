@@ -25,6 +25,8 @@ struct Twist {
 };
 
 /// A direction of motion of which the scan said too little: there the pose is mostly prediction.
+/// It is told for the trajectory of the scan. The rotation that is reported may follow the
+/// prediction more than that (core/registration/reported_end.hpp).
 struct WeakDirection {
   /// Unit vector, order x y z rx ry rz (m and rad, as in `covariance`), in the sensor's frame.
   Vector6d direction = Vector6d::Zero();

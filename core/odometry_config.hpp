@@ -80,7 +80,8 @@ struct DefaultConfig {
   int segments = 2;  ///< of the trajectory of one scan, at least; motion::kMaxSegments at most
   int max_iterations = 12;
   /// Process noise: power densities of the acceleration's white noise, how fast the motion may
-  /// change. These are the least; ProcessNoise estimates more from the motion.
+  /// change. These are the least; ProcessNoise estimates more from the motion. The rotation of the
+  /// reported pose gets motion::kReportedLeast of them at least.
   double roll_pitch_density = 0.3;   ///< rad^2/s^3: suspension, rough ground
   double yaw_density = 0.3;          ///< rad^2/s^3
   double translation_density = 3.0;  ///< m^2/s^3

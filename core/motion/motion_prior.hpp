@@ -13,7 +13,8 @@
 /// reckoning and for gaps that are not predicted (covariance_over_gap()), and what was observed of
 /// it at the start for the first scan. ProcessNoise estimates its density from the motion found;
 /// predict() puts that into a Prior; the solver takes add_prior(), which inflates it where the
-/// motion departs from the prior, and motion_information().
+/// motion departs from the prior, and motion_information(). The pose that is reported has a density
+/// of its own.
 namespace lilo::core {
 
 /// J'OJ over all knots.
@@ -31,6 +32,8 @@ struct Prior {
   KnotInformation begin_information = KnotInformation::Identity();
   /// Power density of acceleration, rotation (rad^2/s^3) and translation (m^2/s^3).
   Vector6d acceleration_density = Vector6d::Ones();
+  /// The same for the pose that is reported (ProcessNoise::reported_density()).
+  Vector6d reported_density = Vector6d::Ones();
 };
 
 /// Adds what is known of the velocity at the beginning besides the last scan: `velocity_mps` with

@@ -31,7 +31,7 @@ Prior predict(const MotionState& state, const ScanTiming& scan, const Vector6d& 
   const double gap_s = prior.unpredicted_s > 0.0 ? 0.0 : std::max(0.0, unseen_s);
   prior.T_begin = moved(state.T_odom_sensor, state.twist, gap_s);
   prior.twist = state.twist;
-  prior.acceleration_density = density;
+  prior.acceleration_density = prior.reported_density = density;
   prior.begin_information = propagated(state.information, density, gap_s);
   prior.segments = segments_for(density, prior.span_s, least_segments);
   return prior;

@@ -23,6 +23,7 @@ struct MotionState {
 
 /// The prior of a scan after a known state: constant velocity with white noise on acceleration of
 /// power density `density` (ProcessNoise::density()), in as many segments as segments_for() says.
+/// The reported pose gets the same density until the caller says otherwise.
 Prior predict(const MotionState& state, const ScanTiming& scan, const Vector6d& density,
               int least_segments);
 

@@ -3,6 +3,8 @@
 
 #include "core/constants.hpp"
 
+#include <algorithm>
+
 namespace lilo::core {
 
 void ProcessNoise::observe(const Pose& T_middle, std::int64_t stamp_ns, const Vector6d& variance) {
@@ -44,6 +46,17 @@ void ProcessNoise::learn(const Vector6d& density) {
   newest.tail<3>() = newest.tail<3>().cwiseMin(motion::kMostTranslation * density_.tail<3>());
   density_ += motion::kNoiseSmoothing * (newest - density_);
   density_ = density_.cwiseMax(nominal_);
+  ++rotations_;
+  const double weight = std::max(motion::kNoiseSmoothing, 1.0 / static_cast<double>(rotations_));
+  rotation_ += weight * (newest.head<3>() - rotation_);
+}
+
+Vector6d ProcessNoise::reported_density() const {
+  if (rotations_ == 0) return density_;
+  const Eigen::Vector3d least = motion::kReportedLeast * nominal_.head<3>();
+  Vector6d density = density_;
+  density.head<3>() = (motion::kReportedRotation * rotation_).cwiseMax(least);
+  return density;
 }
 
 }  // namespace lilo::core

@@ -22,8 +22,8 @@ namespace lilo::core {
 /// Not thread-safe; no allocation.
 class ProcessNoise {
  public:
-  /// `nominal`: density of each axis, rotation (rad^2/s^3), then translation (m^2/s^3). The
-  /// estimate begins there and never falls below.
+  /// `nominal`: density of each axis, rotation (rad^2/s^3), then translation (m^2/s^3). density()
+  /// begins there and never falls below.
   explicit ProcessNoise(const Vector6d& nominal) : nominal_(nominal), density_(nominal) {}
 
   /// The pose in the middle of an aligned scan, and its instant. `variance`: of that pose by the
@@ -40,6 +40,12 @@ class ProcessNoise {
   }
 
   [[nodiscard]] const Vector6d& density() const { return density_; }
+  /// For the pose that is reported. The nominal density leaves room for the motion to come, and
+  /// most vehicles turn far more smoothly. No scan begins with the reported pose. So its rotation
+  /// gets the density that was observed, motion::kReportedLeast of the nominal one at least, and a
+  /// further factor for what shakes faster than the scans: at the end of a scan nothing of it
+  /// cancels (motion::kReportedRotation). As density() before anything was observed.
+  [[nodiscard]] Vector6d reported_density() const;
   /// The mean of what was observed of the first motion::kStartChanges changes of the motion since
   /// the map was begun: with no least value, no limit, and without the factor for what is faster
   /// than the scans. Zero before the first.
@@ -49,6 +55,9 @@ class ProcessNoise {
   void learn(const Vector6d& density);
 
   Vector6d nominal_, density_;
+  // As density_, but with no least value, and of how many changes of the motion.
+  Eigen::Vector3d rotation_ = Eigen::Vector3d::Zero();
+  std::int64_t rotations_ = 0;
   Vector6d at_start_ = Vector6d::Zero();
   int changes_at_start_ = 0;  // of which at_start_ is the mean
   int observed_ = 0;          // poses on end, up to two

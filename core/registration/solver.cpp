@@ -14,14 +14,6 @@
 namespace lilo::core {
 namespace {
 
-/// Marginal information of the last knot: the Schur complement.
-KnotInformation marginal_of_last(const NormalMatrix& H) {
-  const auto n = H.rows() - kKnotSize;
-  const NormalMatrix rest = H.topLeftCorner(n, n);
-  const NormalMatrix cross = H.topRightCorner(n, kKnotSize);
-  return H.bottomRightCorner<kKnotSize, kKnotSize>() - cross.transpose() * rest.ldlt().solve(cross);
-}
-
 /// J'OJ and -J'Or of a bin's residuals, by rotation and translation.
 std::pair<Matrix6d, Vector6d> normal_equations(const ResidualSums& sums) {
   Matrix6d H;
@@ -196,10 +188,10 @@ Matrix6d Solver::data_information() const {
 }
 
 /// Of the knots `x`, from all bins.
-Solver::Equations Solver::data_equations(const Prior& prior, const Unknowns& x,
-                                         const DeadReckoning& reckoned) const {
+KnotEquations Solver::data_equations(const Prior& prior, const Unknowns& x,
+                                     const DeadReckoning& reckoned) const {
   const int n = kKnotSize * (prior.segments + 1);
-  Equations all{NormalMatrix::Zero(n, n), Unknowns::Zero(n)};
+  KnotEquations all{NormalMatrix::Zero(n, n), Unknowns::Zero(n)};
   for (int bin = 0; bin <= registration::kResidualInstants; ++bin) {
     auto [A, c] = normal_equations(bins_[static_cast<std::size_t>(bin)]);
     const KnotWeights w = weights_of_bin(bin, prior);
@@ -236,7 +228,18 @@ Solution Solver::unaligned(const Prior& prior) const {
   Solution solution;
   solution.trajectory = {prior.T_begin, prior.twist, prior.span_s, prior.segments,
                          Unknowns::Zero(Eigen::Index{kKnotSize} * (prior.segments + 1))};
+  solution.reported = {.T_odom_sensor = solution.trajectory.end(), .twist = prior.twist};
   return solution;
+}
+
+GaussNewtonStep Solver::step_from(const Unknowns& x, const Prior& prior,
+                                  const DeadReckoning& reckoned) const {
+  GaussNewtonStep one{.data = data_equations(prior, x, reckoned), .H = {}, .from = x, .step = {}};
+  one.H = one.data.H;
+  Unknowns b = one.data.b;
+  add_prior(prior, x, one.H, b);
+  one.step = one.H.ldlt().solve(b);
+  return one;
 }
 
 Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
@@ -261,15 +264,11 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
       reckoned = DeadReckoning(solution.data_information, solution.motion_information);
       is_first_with_all = false;
     }
-    const Unknowns x = solution.trajectory.knots;
-    Equations data = data_equations(prior, x, reckoned);
-    auto& [H, b] = data;
-    add_prior(prior, x, H, b);
-    const Unknowns step = H.ldlt().solve(b);
-    if (!step.allFinite()) return unaligned(prior);
-    solution.trajectory.knots += (stride == 1 ? registration::kOverRelaxation : 1.0) * step;
+    const GaussNewtonStep last = step_from(solution.trajectory.knots, prior, reckoned);
+    if (!last.step.allFinite()) return unaligned(prior);
+    solution.trajectory.knots += (stride == 1 ? registration::kOverRelaxation : 1.0) * last.step;
     ++solution.iterations;
-    const Vector6d end = step.segment<6>(n - kKnotSize);
+    const Vector6d end = last.step.segment<6>(n - kKnotSize);
     const double step_m = magnitude_m(end.head<3>(), end.tail<3>());
     solution.converged = stride == 1 && step_m < registration::kConvergedStep_m;
     // With a part of the features the solution may circle: its steps grow no shorter.
@@ -278,8 +277,9 @@ Solution Solver::solve(const std::vector<Feature>& features, LocalMaps& maps, co
     // The last step is always taken with all features.
     if (solution.iterations + 1 >= config_.max_iterations) stride = 1;
     if (solution.converged || solution.iterations == config_.max_iterations) {
-      solution.end_information = marginal_of_last(H);
-      solution.design_effect = design_effect(step, prior);
+      solution.end_information = marginal_of_last(last.H);
+      solution.design_effect = design_effect(last.step, prior);
+      solution.reported = reported_end(last, prior, solution.trajectory, solution.end_information);
     }
   }
   return solution;

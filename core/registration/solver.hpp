@@ -7,8 +7,10 @@
 #include "core/feature.hpp"
 #include "core/map/local_maps.hpp"
 #include "core/motion/motion_prior.hpp"
+#include "core/motion/motion_state.hpp"
 #include "core/motion/trajectory.hpp"
 #include "core/odometry_config.hpp"
+#include "core/registration/reported_end.hpp"
 #include "core/registration/weak_directions.hpp"
 
 #include <Eigen/Core>
@@ -39,6 +41,7 @@ struct TallEquations {
 
 struct Solution {
   Trajectory trajectory;
+  MotionState reported;  ///< its end as it is reported (reported_end()), without its stamp
   KnotInformation end_information = KnotInformation::Zero();  ///< marginal of the last knot
   /// Of the pose by the scan alone, as though its residuals were independent.
   Matrix6d data_information = Matrix6d::Zero();
@@ -107,11 +110,6 @@ class Solver {
     double low = 0.0, tall = 0.0;  // information of structure
     TallEquations of_tall;
   };
-  /// H step = b of the deviation from the predicted motion, over all knots.
-  struct Equations {
-    NormalMatrix H;
-    Unknowns b;
-  };
   void weigh_by_height(const std::vector<Feature>& features, LocalMaps& maps, const Prior& prior,
                        Solution& solution);
   [[nodiscard]] float weight_by_height(const Feature& f) const;
@@ -124,8 +122,10 @@ class Solver {
   void add_residual(const Correspondence& one, float kernel_scale, float data_weight, Sums& sums);
   Vector6d design_effect(const Unknowns& step, const Prior& prior) const;
   [[nodiscard]] Matrix6d data_information() const;
-  [[nodiscard]] Equations data_equations(const Prior& prior, const Unknowns& x,
-                                         const DeadReckoning& reckoned) const;
+  [[nodiscard]] KnotEquations data_equations(const Prior& prior, const Unknowns& x,
+                                             const DeadReckoning& reckoned) const;
+  [[nodiscard]] GaussNewtonStep step_from(const Unknowns& x, const Prior& prior,
+                                          const DeadReckoning& reckoned) const;
 
   SolverConfig config_;
   HeightWeights height_weights_;  // of the scan being solved

@@ -34,6 +34,8 @@ LocalOdometry::LocalOdometry(const DefaultConfig& config, std::size_t most_featu
 void LocalOdometry::accept(const ScanTiming& scan, const Solution& solution) {
   const Trajectory& trajectory = solution.trajectory;
   move_to({trajectory.end(), trajectory.end_twist(), solution.end_information, scan.end_ns});
+  reported_ = solution.reported;
+  reported_.end_ns = scan.end_ns;
   uncertainty_.learn(solution.design_effect, solution.data_information);
 }
 
@@ -44,7 +46,7 @@ void LocalOdometry::accept_prediction(const ScanTiming& scan, const Prior& prior
 
 void LocalOdometry::move_to(const MotionState& state) {
   uncertainty_.move(state.T_odom_sensor.translation_m - state_.T_odom_sensor.translation_m);
-  state_ = state;
+  state_ = reported_ = state;
 }
 
 WeakDirections LocalOdometry::find_weak_directions(const ScanTiming& scan,
@@ -77,7 +79,7 @@ Pose LocalOdometry::begin_map(const ScanTiming& first) {
   uncertainty_.begin_map(state_);
   process_noise_.begin_map();
   stationary_.reset();
-  state_ = {};
+  state_ = reported_ = {};
   map_.clear();
   return at;
 }
@@ -87,8 +89,8 @@ void LocalOdometry::rewind(const ScanTiming& first) {
   uncertainty_.rewind();
   process_noise_.begin_map();
   stationary_.reset();
-  state_ = {};
-  state_.end_ns = first.end_ns;
+  state_ = reported_ = {};
+  accept_first(first);
 }
 
 }  // namespace lilo::core

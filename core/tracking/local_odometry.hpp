@@ -26,12 +26,18 @@ class LocalOdometry {
   /// `most_features`: of one scan.
   LocalOdometry(const DefaultConfig& config, std::size_t most_features);
 
+  /// From where the next scan is predicted.
   [[nodiscard]] const MotionState& state() const { return state_; }
+  /// The same instant, for whoever asks where the sensor is (reported_end()).
+  [[nodiscard]] const MotionState& reported() const { return reported_; }
+  /// Of the reported pose.
+  [[nodiscard]] Matrix6d covariance() const { return uncertainty_.covariance(reported_); }
   [[nodiscard]] const KeyframeMap& map() const { return map_; }
-  [[nodiscard]] Matrix6d covariance() const { return uncertainty_.covariance(state_); }
 
   [[nodiscard]] Prior predict(const ScanTiming& scan) const {
-    return core::predict(state_, scan, process_noise_.density(), least_segments_);
+    Prior prior = core::predict(state_, scan, process_noise_.density(), least_segments_);
+    prior.reported_density = process_noise_.reported_density();
+    return prior;
   }
   /// `levels`, `sides`: as in Solver::solve().
   Solution align(const std::vector<Feature>& features, const Prior& prior,
@@ -46,7 +52,7 @@ class LocalOdometry {
   /// The same by the prediction, for a scan that could not be aligned.
   void accept_prediction(const ScanTiming& scan, const Prior& prior);
   /// The first scan of a map: its last firing is the origin.
-  void accept_first(const ScanTiming& scan) { state_.end_ns = scan.end_ns; }
+  void accept_first(const ScanTiming& scan) { state_.end_ns = reported_.end_ns = scan.end_ns; }
 
   /// Learns from the motion just accepted whether the sensor is stationary.
   void observe_stationary() {
@@ -101,7 +107,7 @@ class LocalOdometry {
   ProcessNoise process_noise_;
   PoseUncertainty uncertainty_;
   StationaryDetector stationary_;
-  MotionState state_;
+  MotionState state_, reported_;
   double first_span_s_ = 0.0;  // of the map's first scan
   int least_segments_;
 };

@@ -301,8 +301,8 @@ Estimate Tracker::estimate(const Scan& scan) const {
   Estimate e;
   e.scan_index = scan.index;
   e.stamp_ns = scan.end_ns;
-  e.T_odom_sensor = session_.T_odom_start * local_.state().T_odom_sensor;
-  e.twist = local_.state().twist;
+  e.T_odom_sensor = session_.T_odom_start * local_.reported().T_odom_sensor;
+  e.twist = local_.reported().twist;
   // Before the initial motion is known, nothing is lost yet.
   const bool is_unknown = phase_ == Phase::starting && !initializer_.assumes_stationary();
   e.status = is_lost() && is_unknown ? TrackingStatus::initializing : alignment_.status;

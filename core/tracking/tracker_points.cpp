@@ -26,7 +26,11 @@ void Tracker::aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out
   const std::vector<Feature>& chosen = selection_.chosen();
   const Trajectory& trajectory = alignment_.solution.trajectory;
   if (trajectory.knots.size() == 0) return;  // before the first scan
-  const Pose T_end_odom = trajectory.end().inverse();
+  // The reported pose takes them to the map. Where the alignment was not accepted, the prediction
+  // is reported, and they are as they were measured.
+  const bool is_accepted = !is_lost() || alignment_.is_refuted;
+  const Pose T_end_odom =
+      (is_accepted ? alignment_.solution.reported.T_odom_sensor : trajectory.end()).inverse();
   const Eigen::Matrix3f turned_back = T_end_odom.rotation.toRotationMatrix().cast<float>();
   Sampled sampled;
   sample(trajectory, sampled);
@@ -40,7 +44,7 @@ void Tracker::aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out
 void Tracker::mapped_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const {
   out.clear();
   const std::span<const LocalMaps::Point> inserted = local_.map().inserted();
-  const Pose T_sensor_odom = local_.state().T_odom_sensor.inverse();
+  const Pose T_sensor_odom = local_.reported().T_odom_sensor.inverse();
   take_evenly(inserted.size(), most, [&](std::size_t at) {
     out.emplace_back((T_sensor_odom * inserted[at].point_m).cast<float>());
   });

@@ -38,6 +38,7 @@ Solution aligned(const Pose& T_begin, const Twist& twist, double information = 1
   Solution solution;
   solution.trajectory = steady(T_begin, twist);
   solution.end_information = information * KnotInformation::Identity();
+  solution.reported = {solution.trajectory.end(), twist, solution.end_information, std::nullopt};
   solution.data_information = information * Matrix6d::Identity();
   solution.motion_information = Matrix6d::Identity();
   solution.looked_up = solution.matched = 1000;
@@ -86,12 +87,34 @@ TEST_F(LocalOdometryTest, APredictionIsLessCertainThanTheAlignmentBeforeIt) {
   for (int k = 0; k < 6; ++k) EXPECT_GT(after(k, k), before(k, k)) << k;
 }
 
+// The next scan is predicted from the state, and the reported pose goes out.
+TEST_F(LocalOdometryTest, TheReportedPoseIsNotWhereTheNextScanBegins) {
+  Solution solution = aligned({}, ahead(10.0));
+  solution.reported.T_odom_sensor.translation_m.x() = 1.02;
+  solution.reported.twist = ahead(9.0);
+  solution.reported.information *= 4.0;
+  local_.accept(timing_of(0), aligned({}, ahead(10.0)));
+  const Matrix6d of_state = local_.covariance();
+  local_.accept(timing_of(0), solution);
+  EXPECT_EQ(local_.reported().T_odom_sensor.translation_m.x(), 1.02);
+  EXPECT_EQ(local_.reported().twist.linear_mps.x(), 9.0);
+  EXPECT_EQ(local_.reported().end_ns, kSpan_ns);
+  EXPECT_LT(local_.covariance()(0, 0), of_state(0, 0));
+  EXPECT_NEAR(local_.state().T_odom_sensor.translation_m.x(), 1.0, 1e-9);
+  EXPECT_NEAR(local_.predict(timing_of(1)).T_begin.translation_m.x(), 1.0, 1e-9);
+  local_.accept_prediction(timing_of(1), local_.predict(timing_of(1)));
+  EXPECT_NEAR(local_.reported().T_odom_sensor.translation_m.x(), 2.0, 1e-9);
+  local_.begin_map(timing_of(2));
+  EXPECT_EQ(local_.reported().T_odom_sensor.translation_m, Eigen::Vector3d::Zero());
+}
+
 TEST_F(LocalOdometryTest, AnUnalignedSolutionIsThePrediction) {
   local_.accept(timing_of(0), aligned({}, ahead(3.0)));
   const Prior prior = local_.predict(timing_of(1));
   const Solution none = local_.unaligned(prior);
   EXPECT_EQ(none.matched, 0);
   EXPECT_NEAR(none.trajectory.end().translation_m.x(), 0.6, 1e-9);
+  EXPECT_NEAR(none.reported.T_odom_sensor.translation_m.x(), 0.6, 1e-9);
 }
 
 TEST_F(LocalOdometryTest, FollowsADriveThroughAYard) {

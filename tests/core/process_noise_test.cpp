@@ -117,6 +117,40 @@ TEST(ProcessNoise, CalmsDownWithTheMotion) {
   EXPECT_EQ(noise.density(), nominal());
 }
 
+// Returns that were compensated for the motion tell none.
+TEST(ProcessNoise, IsTheSameForTheReportedPoseWhereNothingIsObserved) {
+  ProcessNoise noise(nominal());
+  EXPECT_EQ(noise.reported_density(), nominal());
+  noise.observe({}, 0, kExact);
+  noise.observe({}, kScan_ns, kExact);
+  EXPECT_EQ(noise.reported_density(), nominal()) << "one velocity is no change";
+  noise.observe({}, 2 * kScan_ns, kExact);
+  EXPECT_LT(noise.reported_density()[2], nominal()[2]);
+}
+
+// A steady motion leaves the reported rotation a tenth of the nominal density.
+TEST(ProcessNoise, TheReportedRotationMayBeCalmerThanTheNominal) {
+  ProcessNoise noise(nominal());
+  density_after(noise, [](double t_s) {
+    return Pose{so3_exp({0.0, 0.0, 0.4 * t_s}), {12.0 * t_s, 0.0, 0.0}};
+  });
+  EXPECT_NEAR((noise.reported_density().head<3>() - 0.1 * nominal().head<3>()).norm(), 0.0, 1e-6);
+  EXPECT_EQ(noise.reported_density().tail<3>(), nominal().tail<3>());
+}
+
+// A yaw rate of 0.5 rad/s and back, scan by scan, is far more than the nominal density. Three times
+// as much counts for the reported pose.
+TEST(ProcessNoise, TheReportedRotationShakesFasterThanTheScans) {
+  ProcessNoise noise(nominal());
+  density_after(noise, [](double t_s) {
+    const bool is_odd = std::lround(10.0 * t_s) % 2 == 1;
+    return Pose{so3_exp({0.0, 0.0, is_odd ? 0.05 : 0.0}), Eigen::Vector3d::Zero()};
+  });
+  EXPECT_GT(noise.density()[2], 10.0 * nominal()[2]);
+  EXPECT_NEAR(noise.reported_density()[2] / noise.density()[2], 3.0, 1e-6);
+  EXPECT_NEAR(noise.reported_density()[0], 0.1 * nominal()[0], 1e-9);
+}
+
 // A pose put right, a new map or a gap is no motion.
 TEST(ProcessNoise, DoesNotTakeAJumpAcrossAnInterruptionForMotion) {
   ProcessNoise noise(nominal());

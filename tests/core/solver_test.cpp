@@ -91,6 +91,68 @@ TEST(Solver, FindsTheMotionWithinAScan) {
   EXPECT_LT((found.trajectory.end_twist().linear_mps - twist.linear_mps).norm(), 0.3);
 }
 
+/// The same with an error of 3 cm (1 sigma) in each coordinate.
+std::vector<Feature> noisy_scan(unsigned seed, const Twist& twist) {
+  std::vector<Feature> features = scan_of(room(seed, 1000), {}, twist);
+  std::mt19937 rng(seed);
+  std::normal_distribution<float> error_m(0.0F, 0.03F);
+  for (Feature& f : features) {
+    f.x_m += error_m(rng);
+    f.y_m += error_m(rng);
+    f.z_m += error_m(rng);
+  }
+  return features;
+}
+
+/// `reported_density`: of rotation.
+Prior known_velocity(const Twist& twist, double density, double reported_density) {
+  Prior prior = loose_prior({});
+  prior.twist = twist;
+  prior.begin_information = 1e6 * KnotInformation::Identity();
+  prior.acceleration_density.setConstant(density);
+  prior.reported_density.setConstant(density);
+  prior.reported_density.head<3>().setConstant(reported_density);
+  return prior;
+}
+
+TEST(Solver, ReportsTheEndOfTheTrajectoryUnderTheSameProcessNoise) {
+  LocalMaps maps = map_of(room(1, 60000), {});
+  const std::vector<Feature> scan = noisy_scan(2, {});
+  Solver solver(kConfig, scan.size());
+  const Solution found = solver.solve(scan, maps, known_velocity({}, 10.0, 10.0));
+  const Pose apart = found.trajectory.end().inverse() * found.reported.T_odom_sensor;
+  EXPECT_LT(apart.translation_m.norm() + so3_log(apart.rotation).norm(), 1e-9);
+  EXPECT_TRUE(found.reported.information.isApprox(found.end_information, 1e-9));
+}
+
+// Where the motion is steadier than the process noise of the trajectory, the reported pose is less
+// off, and knows it.
+TEST(Solver, ReportsASteadyMotionWithLessNoise) {
+  const Twist twist{{2.0, 0.0, 0.0}, {0.0, 0.0, 0.3}};
+  LocalMaps maps = map_of(room(1, 60000), {});
+  double of_trajectory = 0.0, of_reported = 0.0;
+  for (unsigned seed = 2; seed < 22; ++seed) {
+    const std::vector<Feature> scan = noisy_scan(seed, twist);
+    Solver solver(kConfig, scan.size());
+    const Solution found = solver.solve(scan, maps, known_velocity(twist, 3.0, 0.03));
+    const Pose to_truth = moved({}, twist, kSpan_s).inverse();
+    of_trajectory += so3_log((to_truth * found.trajectory.end()).rotation).squaredNorm();
+    of_reported += so3_log((to_truth * found.reported.T_odom_sensor).rotation).squaredNorm();
+    EXPECT_GT(found.reported.information(2, 2), found.end_information(2, 2));
+  }
+  EXPECT_LT(of_reported, 0.7 * of_trajectory);
+}
+
+// The yaw rate jumps to 1 rad/s as the scan begins.
+TEST(Solver, ReportsAnAbruptTurnUnderLittleProcessNoise) {
+  const Twist turn{Eigen::Vector3d::Zero(), {0.0, 0.0, 1.0}};
+  LocalMaps maps = map_of(room(1, 60000), {});
+  const std::vector<Feature> scan = scan_of(room(2, 3000), {}, turn);
+  Solver solver(kConfig, scan.size());
+  const Solution found = solver.solve(scan, maps, known_velocity({}, 10.0, 0.01));
+  EXPECT_NEAR(so3_log(found.reported.T_odom_sensor.rotation).z(), 0.1, 0.01);
+}
+
 /// A room whose front wall was seen from the next room only, where its face is so much farther.
 LocalMaps map_with_wall_from_behind(double wall_m) {
   LocalMaps maps = empty_maps();
