@@ -56,10 +56,10 @@ void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_
 }
 
 // White noise of density q makes a position uncertain by q t^3 / 3: by q t^2 dt more in a moment.
-void Drift::coast(const Motions& motions, double acceleration_density, double span_s) {
+// The motions have the square root of q.
+void Drift::coast(const Motions& motions, double span_s) {
   coasted_s_ += span_s;
-  const double variance = acceleration_density * coasted_s_ * coasted_s_ * span_s;
-  pose_ += variance * motions * motions.transpose();
+  pose_ += coasted_s_ * coasted_s_ * span_s * motions * motions.transpose();
 }
 
 // One scan that tells little more than nothing does not restore the velocity.

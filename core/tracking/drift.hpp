@@ -37,11 +37,11 @@ class Drift {
   /// map of so many keyframes.
   void inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor, int keyframes);
 
-  /// Motions of a metre each, or zero, as columns: rotation then translation (odometry's axes).
+  /// Motions as columns, rotation then translation (odometry's axes), or zero: each with the square
+  /// root of its process noise (rad/s^1.5, m/s^1.5). In a bend the sensor turns as it moves along.
   using Motions = Eigen::Matrix<double, 6, 3>;
-  /// For `span_s` nothing was known of the motion along these but that its acceleration is white
-  /// noise of that density (m^2/s^3). In a bend the sensor turns as it moves along.
-  void coast(const Motions& motions, double acceleration_density, double span_s);
+  /// For `span_s` nothing was known of the motion along these but its process noise.
+  void coast(const Motions& motions, double span_s);
   /// For `span_s` a scan told of all translations.
   void see(double span_s);
   /// The covariance of the error with which the first scan entered the map, about the origin, where

@@ -88,11 +88,15 @@ void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state
     const WeakDirection& one = weak.all[static_cast<std::size_t>(k)];
     sees_all = sees_all && !is_translation(one);
     if (!is_dead_reckoned(one)) continue;
-    motions.col(count) << R * one.direction.tail<3>(), R * one.direction.head<3>();
-    motions.col(count++) /= one.direction.head<3>().norm();
+    // With so much noise on each axis, a motion has q = 1 / (m' diag(q)^-1 m) along it. A direction
+    // that turns far as it moves is as little free as its rotation.
+    Vector6d motion;
+    motion << R * one.direction.tail<3>(), R * one.direction.head<3>();
+    const double inverse_density = motion.cwiseAbs2().cwiseQuotient(mean_by_kind(density)).sum();
+    motions.col(count++) = motion / std::sqrt(inverse_density);
   }
   if (count > 0) {
-    drift_.coast(motions, density.segment<2>(3).mean(), span_s);
+    drift_.coast(motions, span_s);
   } else if (sees_all) {
     drift_.see(span_s);
   }

@@ -199,8 +199,8 @@ TEST(Drift, WhatNoScanTellsIsDeadReckoned) {
   constexpr double kDensity = 3.0, kScan_s = 0.01;
   core::Drift drift;
   core::Drift::Motions motions = core::Drift::Motions::Zero();
-  motions.col(0).tail<3>() = Eigen::Vector3d(0.6, 0.8, 0.0);
-  for (int scan = 0; scan < 1000; ++scan) drift.coast(motions, kDensity, kScan_s);
+  motions.col(0).tail<3>() = std::sqrt(kDensity) * Eigen::Vector3d(0.6, 0.8, 0.0);
+  for (int scan = 0; scan < 1000; ++scan) drift.coast(motions, kScan_s);
   const Matrix6d covariance = drift.covariance();
   EXPECT_NEAR(covariance(3, 3) / (0.36 * kDensity * 1000.0 / 3.0), 1.0, 0.01);
   EXPECT_NEAR(covariance(4, 4) / (0.64 * kDensity * 1000.0 / 3.0), 1.0, 0.01);
@@ -212,7 +212,7 @@ TEST(Drift, DeadReckoningInABendTurnsToo) {
   core::Drift drift;
   core::Drift::Motions motions = core::Drift::Motions::Zero();
   motions.col(0) << 0.0, 0.0, 0.1, 1.0, 0.0, 0.0;
-  for (int scan = 0; scan < 100; ++scan) drift.coast(motions, 3.0, 0.1);
+  for (int scan = 0; scan < 100; ++scan) drift.coast(motions, 0.1);
   const Matrix6d covariance = drift.covariance();
   EXPECT_NEAR(covariance(2, 2) / covariance(3, 3), 0.01, 1e-9);
   EXPECT_NEAR(covariance(2, 3) / covariance(3, 3), 0.1, 1e-9);

@@ -297,6 +297,24 @@ TEST(PoseUncertainty, AScanThatGivesAThirdRestoresNoVelocity) {
   EXPECT_NEAR(grown_after(WeakDirections{}), (1.0 + 1.0) * 1e-3, 1e-9);
 }
 
+// A scan in which the sensor may have pitched as it rose. Where the rise is free, pitch has its own
+// noise, and the other way round. Where both are as noisy, so is the motion.
+TEST(PoseUncertainty, DeadReckoningThatTurnsIsAsLittleFreeAsTheRotation) {
+  constexpr double kPitch = 0.8, kRise = 0.6;
+  const auto grown_with = [](double pitch_density, double rise_density) -> Matrix6d {
+    PoseUncertainty uncertainty(kDataWeight);
+    const Matrix6d before = uncertainty.covariance(exact_state());
+    uncertainty.learn(weak_along(six(0.0, 0.0, kRise, 0.0, kPitch, 0.0)), exact_state(),
+                      six(pitch_density, pitch_density, 1.0, 1.0, 1.0, rise_density), kScan_s);
+    return uncertainty.covariance(exact_state()) - before;
+  };
+  EXPECT_NEAR(grown_with(0.3, 1e9)(1, 1), 0.3e-3, 1e-9);
+  EXPECT_NEAR(grown_with(1e9, 30.0)(5, 5), 30e-3, 1e-8);
+  const Matrix6d alike = grown_with(2.0, 2.0);
+  EXPECT_NEAR(alike(1, 1) + alike(5, 5), 2e-3, 1e-9);
+  EXPECT_NEAR(alike(1, 1) / alike(5, 5), kPitch * kPitch / (kRise * kRise), 1e-6);
+}
+
 TEST(PoseUncertainty, WeaknessThatMostlyTurnsIsNotDeadReckoned) {
   PoseUncertainty uncertainty(kDataWeight);
   const Vector6d density = Vector6d::Ones();
