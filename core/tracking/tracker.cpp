@@ -128,7 +128,7 @@ void Tracker::begin_session(bool may_be_stationary) {
   motion_check_.clear();  // an ambiguity of the old map must not end the new session
   confirmation_ = {};
   tall_structure_.forget_scans();
-  history_.fit = {};
+  history_.fit = start_fit_ = {};
   phase_ = Phase::starting;
 }
 
@@ -145,6 +145,7 @@ Prior Tracker::begin_scan(const std::vector<Feature>& features) {
       tall_structure_.forget_scans();
     }
     if (!is_known) return local_.predict(scan_.timing);
+    history_.fit = start_fit_;
   }
   phase_ = history_.unseen_s(scan_.timing) > motion::kShortGap_s ? Phase::lost : Phase::tracking;
   return local_.predict(scan_.timing);
@@ -222,7 +223,12 @@ void Tracker::accept(const Prior& prior) {
       history_.fit.relative(solution, scan_.structure) < registration::kDoubtfulFit;
   if (alignment_.is_explained) {
     history_.end_ns = scan_.timing.end_ns;
-    if (phase_ != Phase::starting) history_.fit.learn(solution, scan_.structure);
+    if (phase_ == Phase::starting) {
+      start_fit_ = {};  // more fits the young map from scan to scan, so that the newest one counts
+      start_fit_.learn(solution, scan_.structure);
+    } else {
+      history_.fit.learn(solution, scan_.structure);
+    }
   }
   // A scan with compensated returns has no middle. One that has not converged is farther off than
   // its information says, and the noise would grow by its errors.

@@ -113,6 +113,7 @@ class Tracker {
   Observation scan_;     // the last scan
   Alignment alignment_;  // of it
   AlignmentHistory history_;
+  StructureFit start_fit_;  // of the last scan of phase `starting`: the usual fit after it
 };
 
 }  // namespace lilo::core
