@@ -68,7 +68,8 @@ std::vector<Key> default_profile_keys() {
       real("odometry.default.roll_pitch_density",
            LILO_MEMBER(odometry.default_profile.roll_pitch_density), 0.0001, 100.0, "", kRestart,
            "Least process noise of roll and pitch: power density of the angular acceleration "
-           "(rad2/s3). More is estimated on the way. The pose that is sent has a tenth at least."),
+           "(rad2/s3). More is estimated on the way. The least for the pose that is sent is a "
+           "tenth."),
       real("odometry.default.yaw_density", LILO_MEMBER(odometry.default_profile.yaw_density),
            0.0001, 100.0, "", kRestart, "Least process noise of yaw, likewise (rad2/s3)."),
       real("odometry.default.translation_density",

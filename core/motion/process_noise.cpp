@@ -46,16 +46,16 @@ void ProcessNoise::learn(const Vector6d& density) {
   newest.tail<3>() = newest.tail<3>().cwiseMin(motion::kMostTranslation * density_.tail<3>());
   density_ += motion::kNoiseSmoothing * (newest - density_);
   density_ = density_.cwiseMax(nominal_);
-  ++rotations_;
-  const double weight = std::max(motion::kNoiseSmoothing, 1.0 / static_cast<double>(rotations_));
-  rotation_ += weight * (newest.head<3>() - rotation_);
+  ++changes_;
+  const double weight = std::max(motion::kNoiseSmoothing, 1.0 / static_cast<double>(changes_));
+  rotation_density_ += weight * (newest.head<3>() - rotation_density_);
 }
 
 Vector6d ProcessNoise::reported_density() const {
-  if (rotations_ == 0) return density_;
+  if (changes_ == 0) return density_;
   const Eigen::Vector3d least = motion::kReportedLeast * nominal_.head<3>();
   Vector6d density = density_;
-  density.head<3>() = (motion::kReportedRotation * rotation_).cwiseMax(least);
+  density.head<3>() = (motion::kReportedRotation * rotation_density_).cwiseMax(least);
   return density;
 }
 

@@ -55,9 +55,9 @@ class ProcessNoise {
   void learn(const Vector6d& density);
 
   Vector6d nominal_, density_;
-  // As density_, but with no least value, and of how many changes of the motion.
-  Eigen::Vector3d rotation_ = Eigen::Vector3d::Zero();
-  std::int64_t rotations_ = 0;
+  // The rotation's part of density_, but with no least value; and the changes of the motion in it.
+  Eigen::Vector3d rotation_density_ = Eigen::Vector3d::Zero();
+  std::int64_t changes_ = 0;
   Vector6d at_start_ = Vector6d::Zero();
   int changes_at_start_ = 0;  // of which at_start_ is the mean
   int observed_ = 0;          // poses on end, up to two

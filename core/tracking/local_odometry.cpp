@@ -35,7 +35,6 @@ void LocalOdometry::accept(const ScanTiming& scan, const Solution& solution) {
   const Trajectory& trajectory = solution.trajectory;
   move_to({trajectory.end(), trajectory.end_twist(), solution.end_information, scan.end_ns});
   reported_ = solution.reported;
-  reported_.end_ns = scan.end_ns;
   uncertainty_.learn(solution.design_effect, solution.data_information);
 }
 
@@ -90,7 +89,7 @@ void LocalOdometry::rewind(const ScanTiming& first) {
   process_noise_.begin_map();
   stationary_.reset();
   state_ = reported_ = {};
-  accept_first(first);
+  state_.end_ns = first.end_ns;
 }
 
 }  // namespace lilo::core

@@ -28,7 +28,7 @@ class LocalOdometry {
 
   /// From where the next scan is predicted.
   [[nodiscard]] const MotionState& state() const { return state_; }
-  /// The same instant, for whoever asks where the sensor is (reported_end()).
+  /// For whoever asks where the sensor is (reported_end()). Its stamp is that of the state.
   [[nodiscard]] const MotionState& reported() const { return reported_; }
   /// Of the reported pose.
   [[nodiscard]] Matrix6d covariance() const { return uncertainty_.covariance(reported_); }
@@ -52,7 +52,7 @@ class LocalOdometry {
   /// The same by the prediction, for a scan that could not be aligned.
   void accept_prediction(const ScanTiming& scan, const Prior& prior);
   /// The first scan of a map: its last firing is the origin.
-  void accept_first(const ScanTiming& scan) { state_.end_ns = reported_.end_ns = scan.end_ns; }
+  void accept_first(const ScanTiming& scan) { state_.end_ns = scan.end_ns; }
 
   /// Learns from the motion just accepted whether the sensor is stationary.
   void observe_stationary() {

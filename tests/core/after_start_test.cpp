@@ -29,7 +29,7 @@ double yaw_after_turn(double speed_mps, int turning) {
   return so3_log(last.T_odom_sensor.rotation).z();
 }
 
-// At rest the start takes four scans, the last of which is no longer of it; in motion six.
+// At rest the fourth scan is the first one after the start, in motion the sixth.
 TEST(AfterStart, AnAbruptTurnIsFollowed) {
   for (const int turning : {3, 4, 5}) {
     EXPECT_NEAR(yaw_after_turn(0.0, turning), kTurn_rad, 0.02) << turning;

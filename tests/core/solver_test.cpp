@@ -91,7 +91,7 @@ TEST(Solver, FindsTheMotionWithinAScan) {
   EXPECT_LT((found.trajectory.end_twist().linear_mps - twist.linear_mps).norm(), 0.3);
 }
 
-/// The same with an error of 3 cm (1 sigma) in each coordinate.
+/// 1000 features of a sensor in the room, with an error of 3 cm (1 sigma) in each coordinate.
 std::vector<Feature> noisy_scan(unsigned seed, const Twist& twist) {
   std::vector<Feature> features = scan_of(room(seed, 1000), {}, twist);
   std::mt19937 rng(seed);
