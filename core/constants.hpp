@@ -116,8 +116,7 @@ inline constexpr double kShortGap_s = 0.35;
 /// where it was.
 inline constexpr double kLongestGap_s = 2.5;
 
-/// Seconds: a gap that is not predicted counts as so long at most. The clock may have been set by
-/// years.
+/// Seconds: a gap not predicted counts as so long at most. The clock may have been set by years.
 inline constexpr double kMostGap_s = 60.0;
 
 /// 1 sigma (m, rad) of the pose before the first scan. Range: 0.5e-4 to 2e-4.
@@ -180,10 +179,9 @@ inline constexpr double kWeakShare = 0.5;
 /// 0.25, by NEES and by the drift in tunnels.
 inline constexpr double kDeadReckonedShare = 0.15;
 /// Ratio of the second smallest to the smallest eigenvalue of the translation's information, from
-/// which a scan is degenerate. In tunnels it is mostly 600 or more, along a motorway's rails 400 or
-/// more in up to a quarter of the scans, elsewhere mostly below 100. Range: 100 to 400, by poses
-/// that are wrong and `tracking`.
-inline constexpr double kDegenerateRatio = 200.0;
+/// which a scan is degenerate. In tunnels it is mostly 600 or more, elsewhere mostly below 100.
+/// Range: 50 to 200, by NEES and by poses that are wrong and `tracking`.
+inline constexpr double kDegenerateRatio = 100.0;
 /// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
 inline constexpr double kMostlyTurns_m = 0.3;
 

@@ -43,11 +43,12 @@ bool is_any_dead_reckoned(const WeakDirections& weak) {
   return std::any_of(weak.all.begin(), weak.all.begin() + weak.count, is_dead_reckoned);
 }
 
-bool is_degenerate(const Matrix6d& scan_information) {
+std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_information) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of_translation(
-      scan_information.bottomRightCorner<3, 3>(), Eigen::EigenvaluesOnly);
+      scan_information.bottomRightCorner<3, 3>());
   const Eigen::Vector3d& growing = of_translation.eigenvalues();
-  return registration::kDegenerateRatio * growing[0] < growing[1];
+  if (!(registration::kDegenerateRatio * growing[0] < growing[1])) return std::nullopt;
+  return of_translation.eigenvectors().col(0);
 }
 
 DeadReckoning::DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information) {

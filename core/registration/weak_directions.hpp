@@ -3,7 +3,10 @@
 
 #include "core/estimate.hpp"
 
+#include <Eigen/Core>
+
 #include <array>
+#include <optional>
 
 namespace lilo::core {
 
@@ -33,14 +36,14 @@ bool is_dead_reckoned(const WeakDirection& weak);
 /// Whether any of them is.
 bool is_any_dead_reckoned(const WeakDirections& weak);
 
-/// Whether a scan tells far less of the translation along one direction than along either of two
-/// others, if its rotation were known: the second smallest eigenvalue of the information is far
+/// The direction, if any, along which a scan tells far less of the translation than along either of
+/// two others, if its rotation were known: the second smallest eigenvalue of the information is far
 /// larger than the smallest (Zhang, Kaess and Singh, On Degeneracy of Optimization-based State
 /// Estimation Problems, ICRA 2016, compare the smallest with a threshold). So a bare field, where
 /// two are small, is not degenerate, and a smooth tunnel is. There what noise seems to tell of the
 /// speed makes the process noise grow, until no direction is weak. The motion model does not enter
 /// here.
-bool is_degenerate(const Matrix6d& scan_information);
+std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_information);
 
 /// The motion of a pose along its dead reckoned direction, if there is just one. In a bend the
 /// sensor turns as it moves along.

@@ -16,7 +16,8 @@ namespace lilo::core {
 ///   In the sensor's axes it is a first-order Gauss-Markov process (Gelb, Applied Optimal
 ///   Estimation, 1974, chapter 3) that augments the pose.
 /// - An error of attitude turns into an error of position as the sensor moves on.
-/// - Along a direction of which scans tell next to nothing the motion is dead reckoned.
+/// - Along a direction of which scans tell next to nothing the motion is dead reckoned, and along
+///   the ground where the odometry may have followed traffic.
 /// - Errors of the beams that are not known bend the path.
 ///
 /// The scale of the path is uncertain as well: what is seen of an object moves a little with the
@@ -39,7 +40,7 @@ class Drift {
 
   /// Motions as columns, rotation then translation (odometry's axes), or zero: each with the square
   /// root of its process noise (rad/s^1.5, m/s^1.5). In a bend the sensor turns as it moves along.
-  using Motions = Eigen::Matrix<double, 6, 3>;
+  using Motions = Eigen::Matrix<double, 6, 5>;
   /// For `span_s` nothing was known of the motion along these but its process noise.
   void coast(const Motions& motions, double span_s);
   /// For `span_s` a scan told of all translations.

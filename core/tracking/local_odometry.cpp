@@ -48,11 +48,11 @@ void LocalOdometry::move_to(const MotionState& state) {
   state_ = reported_ = state;
 }
 
-WeakDirections LocalOdometry::find_weak_directions(const ScanTiming& scan,
-                                                   const Solution& solution) {
+WeakDirections LocalOdometry::find_weak_directions(const ScanTiming& scan, const Solution& solution,
+                                                   bool may_follow_traffic) {
   WeakDirections weak = weak_directions(solution.data_information, solution.motion_information,
                                         state_.T_odom_sensor.rotation);
-  uncertainty_.learn(weak, state_, process_noise_.density(), scan.span_s());
+  uncertainty_.learn(weak, state_, process_noise_.density(), scan.span_s(), may_follow_traffic);
   return weak;
 }
 

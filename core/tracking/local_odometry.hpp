@@ -63,8 +63,9 @@ class LocalOdometry {
   void assume_stationary() { stationary_.assume(state_.T_odom_sensor.translation_m); }
   /// Finds the weak directions of a scan that was accepted. Along those of which it tells next to
   /// nothing the motion is dead reckoned (is_dead_reckoned()), and the covariance of the pose
-  /// grows.
-  WeakDirections find_weak_directions(const ScanTiming& scan, const Solution& solution);
+  /// grows. `may_follow_traffic`: as in PoseUncertainty.
+  WeakDirections find_weak_directions(const ScanTiming& scan, const Solution& solution,
+                                      bool may_follow_traffic = false);
   /// Learns how fast the motion changes, from a scan that was aligned (ProcessNoise), and so how
   /// uncertain the first scan of the map is.
   void observe_noise(const ScanTiming& scan, const Solution& solution);

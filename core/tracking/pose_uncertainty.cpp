@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <optional>
+#include <span>
 
 namespace lilo::core {
 namespace {
@@ -22,6 +25,23 @@ Matrix6d positive_part(const Matrix6d& A) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(A);
   const Matrix6d& V = solver.eigenvectors();
   return V * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
+}
+
+/// Adds motions along the weak directions that are dead reckoned, three at most, each with the
+/// square root of its process noise. With so much noise on each axis, a motion has q = 1 / (m'
+/// diag(q)^-1 m) along it: a direction that turns far as it moves is as little free as its
+/// rotation.
+int add_dead_reckoned(std::span<const WeakDirection> weak, const Eigen::Quaterniond& R_odom_sensor,
+                      const Vector6d& density, Drift::Motions& motions) {
+  int count = 0;
+  for (const WeakDirection& one : weak) {
+    if (count == 3 || !is_dead_reckoned(one)) continue;
+    Vector6d motion;
+    motion << R_odom_sensor * one.direction.tail<3>(), R_odom_sensor * one.direction.head<3>();
+    const double inverse_density = motion.cwiseAbs2().cwiseQuotient(density).sum();
+    motions.col(count++) = motion / std::sqrt(inverse_density);
+  }
+  return count;
 }
 
 /// About no axis is a rotation less known than an angle of which nothing is: pi^2 / 3.
@@ -79,25 +99,20 @@ void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {
 }
 
 void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state,
-                            const Vector6d& density, double span_s) {
-  const Eigen::Quaterniond& R = state.T_odom_sensor.rotation;
+                            const Vector6d& density, double span_s, bool may_follow_traffic) {
+  const std::span all = std::span(weak.all).first(static_cast<std::size_t>(weak.count));
+  const Vector6d shared = mean_by_kind(density);
   Drift::Motions motions = Drift::Motions::Zero();
-  int count = 0;
-  bool sees_all = true;
-  for (int k = 0; k < weak.count && count < 3; ++k) {
-    const WeakDirection& one = weak.all[static_cast<std::size_t>(k)];
-    sees_all = sees_all && !is_translation(one);
-    if (!is_dead_reckoned(one)) continue;
-    // With so much noise on each axis, a motion has q = 1 / (m' diag(q)^-1 m) along it. A direction
-    // that turns far as it moves is as little free as its rotation.
-    Vector6d motion;
-    motion << R * one.direction.tail<3>(), R * one.direction.head<3>();
-    const double inverse_density = motion.cwiseAbs2().cwiseQuotient(mean_by_kind(density)).sum();
-    motions.col(count++) = motion / std::sqrt(inverse_density);
+  int count = add_dead_reckoned(all, state.T_odom_sensor.rotation, shared, motions);
+  const std::optional<Eigen::Vector3d> degenerate = degenerate_direction(data_information_);
+  if (may_follow_traffic) {
+    for (const int axis : {3, 4}) motions(axis, count++) = std::sqrt(shared[axis]);
+  } else if (degenerate && count == 0) {
+    motions.col(count++).tail<3>() = std::sqrt(shared[3]) * *degenerate;
   }
   if (count > 0) {
     drift_.coast(motions, span_s);
-  } else if (sees_all) {
+  } else if (std::none_of(all.begin(), all.end(), is_translation)) {
     drift_.see(span_s);
   }
 }

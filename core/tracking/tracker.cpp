@@ -33,6 +33,11 @@ bool is_motion_doubtful(const MotionCheck& check, const TallStructure& tall) {
   return check.is_ambiguous() || tall.disagrees();
 }
 
+/// Whether that is so, or was so and nothing confirms the motion since.
+bool may_follow_traffic(const MotionCheck& check, const TallStructure& tall) {
+  return is_motion_doubtful(check, tall) || tall.is_missing();
+}
+
 /// Whether an alignment found too little of the scan in the map. `fit`: StructureFit::relative().
 bool matches_too_little(const Solution& solution, double fit) {
   // A number, not a part of the features: in a park a fifth of them may match in a good alignment.
@@ -79,7 +84,8 @@ Estimate Tracker::align(const Scan& scan, std::vector<Feature>& features, StageH
   accept(prior);
   watch_session();
   if (!is_first() && !is_lost()) {
-    alignment_.weak = local_.find_weak_directions(scan_.timing, alignment_.solution);
+    alignment_.weak = local_.find_weak_directions(
+        scan_.timing, alignment_.solution, may_follow_traffic(motion_check_, tall_structure_));
   }
   confirm();
   Estimate result = estimate(scan);
@@ -254,8 +260,7 @@ void Tracker::accept(const Prior& prior) {
 /// Scans before a gap, or before the clock was set, cannot be laid over this one.
 bool Tracker::is_checked() const { return phase_ == Phase::tracking && !is_lost(); }
 
-/// Takes the scan. Returns whether another motion explains the last scans better, so that the map
-/// may be wrong.
+/// Takes the scan. Returns whether another motion explains the last scans better.
 bool Tracker::check_motion() {
   if (!is_checked()) {
     motion_check_.clear();
@@ -281,21 +286,19 @@ void Tracker::watch_session() {
   } else if (motion_check_.ambiguity_ended() && alignment_.status == TrackingStatus::tracking) {
     alignment_.status = TrackingStatus::degraded;
   }
+  // Few rooms are that tall, and no vehicles drive there. Not converged, residuals may be large.
+  const bool tells_place = !is_lost() && !scan_.is_room && alignment_.solution.converged;
+  tall_structure_.observe(tells_place ? alignment_.solution.tall : TallEquations{},
+                          motion_check_.is_ambiguous() || alignment_.is_refuted,
+                          scan_.timing.end_ns);
   session_.is_over = alignment_.is_refuted || motion_check_.ambiguity_ended() ||
                      session_.unexplained_scans == tracking::kScansToGiveUp;
 }
 
 void Tracker::confirm() {
-  // Few rooms are that tall, and no vehicles drive there. Before the last step of a solver that did
-  // not converge, residuals may be large.
-  const bool tells_place = !is_lost() && !scan_.is_room && alignment_.solution.converged;
-  tall_structure_.observe(tells_place ? alignment_.solution.tall : TallEquations{},
-                          motion_check_.is_ambiguous() || alignment_.is_refuted,
-                          scan_.timing.end_ns);
   const bool is_good = alignment_.is_good && alignment_.weak.count == 0 &&
-                       !is_motion_doubtful(motion_check_, tall_structure_) &&
-                       !tall_structure_.is_missing() &&
-                       !is_degenerate(alignment_.solution.data_information);
+                       !may_follow_traffic(motion_check_, tall_structure_) &&
+                       !degenerate_direction(alignment_.solution.data_information);
   confirmation_.add(is_good);
   // A sensor that was just switched on, and is stationary, is believed at once.
   if (is_good && initializer_.assumes_stationary()) confirmation_.confirm();

@@ -315,6 +315,34 @@ TEST(PoseUncertainty, DeadReckoningThatTurnsIsAsLittleFreeAsTheRotation) {
   EXPECT_NEAR(alike(1, 1) / alike(5, 5), kPitch * kPitch / (kRise * kRise), 1e-6);
 }
 
+// What the scans were aligned with may have moved along the ground in any direction.
+TEST(PoseUncertainty, WhereTrafficMayBeFollowedTheMotionAlongTheGroundIsDeadReckoned) {
+  constexpr double kShortScan_s = 0.01;
+  const Vector6d density = six(0.3, 0.3, 0.3, 2.0, 4.0, 100.0);  // 3 on the ground plane
+  PoseUncertainty uncertainty(kDataWeight);
+  for (int scan = 0; scan < 100; ++scan) {
+    uncertainty.learn(WeakDirections{}, exact_state(), density, kShortScan_s, true);
+  }
+  const Matrix6d covariance = uncertainty.covariance(exact_state());
+  for (const int axis : {3, 4}) EXPECT_NEAR(covariance(axis, axis), 1.0, 0.03);  // q t^3 / 3
+  EXPECT_NEAR(covariance(5, 5), 0.0, 1e-9);
+}
+
+// Of y the scans tell a hundredth of what they tell of any other direction, or less.
+TEST(PoseUncertainty, AlongTheDirectionOfADegenerateScanTheMotionIsDeadReckoned) {
+  const auto grown_with = [](double along_y) -> Matrix6d {
+    PoseUncertainty uncertainty(kDataWeight);
+    uncertainty.learn(Vector6d::Zero(), six(1e9, 1e9, 1e9, 1e9, along_y, 1e9).asDiagonal());
+    const Matrix6d before = uncertainty.covariance(exact_state());
+    uncertainty.learn(WeakDirections{}, exact_state(), Vector6d::Constant(2.0), kScan_s);
+    return uncertainty.covariance(exact_state()) - before;
+  };
+  const Matrix6d grown = grown_with(0.9e7);
+  EXPECT_NEAR(grown(4, 4), 2e-3, 1e-9);  // q t^2 dt of one scan
+  EXPECT_NEAR(grown.trace(), grown(4, 4), 1e-9);
+  EXPECT_NEAR(grown_with(1.1e7).trace(), 0.0, 1e-9);
+}
+
 TEST(PoseUncertainty, WeaknessThatMostlyTurnsIsNotDeadReckoned) {
   PoseUncertainty uncertainty(kDataWeight);
   const Vector6d density = Vector6d::Ones();

@@ -148,11 +148,14 @@ Matrix6d of_translation(double along, double across, double up) {
   return information;
 }
 
-TEST(IsDegenerate, AlongOneDirectionAlone) {
-  EXPECT_TRUE(core::is_degenerate(of_translation(1.0, 210.0, 1000.0)));
-  EXPECT_FALSE(core::is_degenerate(of_translation(1.0, 190.0, 1000.0)));
-  EXPECT_FALSE(core::is_degenerate(of_translation(1.0, 2.0, 1000.0))) << "a bare field";
-  EXPECT_FALSE(core::is_degenerate(Matrix6d::Zero()));
+TEST(DegenerateDirection, IsTheOneAlongWhichLeastIsTold) {
+  const auto found = core::degenerate_direction(of_translation(1.0, 105.0, 1000.0));
+  ASSERT_TRUE(found);
+  const Eigen::Matrix3d R(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()));
+  EXPECT_NEAR(std::abs(found->dot(R.col(0))), 1.0, 1e-9);
+  EXPECT_FALSE(core::degenerate_direction(of_translation(1.0, 95.0, 1000.0)));
+  EXPECT_FALSE(core::degenerate_direction(of_translation(1.0, 2.0, 1000.0))) << "a bare field";
+  EXPECT_FALSE(core::degenerate_direction(Matrix6d::Zero()));
 }
 
 TEST(WeakDirections, AlongATunnel) {
