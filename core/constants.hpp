@@ -28,8 +28,7 @@ inline constexpr std::size_t kStride = 8;
 /// Weight of the residuals: those of neighbours have errors in common. That only one of kStride is
 /// used is counted in.
 inline constexpr double kWeight = 0.16;
-/// Observations that an estimate remembers: errors may change with temperature and years. Range:
-/// 1000 to 3000.
+/// Observations remembered: errors may change with temperature and years. Range: 1000 to 3000.
 inline constexpr double kMemory = 1000.0;
 /// Metres between two observations.
 inline constexpr double kApart_m = 0.3;
@@ -109,11 +108,9 @@ inline constexpr double kComparedSpan_s = 0.09;
 inline constexpr std::int64_t kNextFiring_ns = 1'000'000;
 /// Seconds: shorter gaps between two firings change no information. Range: 5e-6 to 2e-5.
 inline constexpr double kLeastGap_s = 1e-5;
-/// Seconds: over such a gap a prediction is good to half a cell, so that an alignment which begins
-/// there finds the sensor.
+/// Seconds: over such a gap a prediction is good to half a cell, and an alignment from there works.
 inline constexpr double kShortGap_s = 0.35;
-/// Seconds: after a longer gap the clock was set, or the sensor may be anywhere. It is predicted
-/// where it was.
+/// Seconds: after a longer gap, or if the clock was set, the sensor is predicted where it was.
 inline constexpr double kLongestGap_s = 2.5;
 
 /// Seconds: a gap not predicted counts as so long at most. The clock may have been set by years.
@@ -180,7 +177,7 @@ inline constexpr double kWeakShare = 0.5;
 inline constexpr double kDeadReckonedShare = 0.15;
 /// Ratio of the second smallest to the smallest eigenvalue of the translation's information, from
 /// which a scan is degenerate. In tunnels it is mostly 600 or more, elsewhere mostly below 100.
-/// Range: 50 to 200, by NEES and by poses that are wrong and `tracking`.
+/// With 200 more poses are wrong and `tracking`; with 50 fewer are `tracking`, as on motorways.
 inline constexpr double kDegenerateRatio = 100.0;
 /// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
 inline constexpr double kMostlyTurns_m = 0.3;
@@ -328,6 +325,12 @@ inline constexpr double kFoundPlace_rad = kFoundPlace_m / motion::kLever_m;
 inline constexpr double kMinGround = 0.5 * static_cast<double>(kMinFeatures);
 /// Metres from the prediction, within which an alignment is exactly there.
 inline constexpr double kInPlace_m = 0.2;
+
+/// Metres of the way, and 1 sigma of the pose after it while it is `tracking`: half of 1 m and of 3
+/// degrees, from which `lilo eval` counts it as wrong.
+inline constexpr double kTrustedWay_m = 10.0, kTrusted_m = 0.5, kTrusted_rad = 0.0262;
+/// Scans that count where they went less far: no status is for ever.
+inline constexpr int kTrustedScans = 300;
 
 /// Weight of the newest scan in the design effect.
 inline constexpr double kDesignEffectSmoothing = 0.1;

@@ -14,7 +14,8 @@ enum class TrackingStatus : std::uint8_t {
   tracking,      ///< aligned with the map
   degraded,      ///< aligned, but the prediction held some direction, data were missing, at most
                  ///< half of the usual structure fits, the solver did not converge, the last
-                 ///< scans leave the motion in doubt, or too few good alignments came in a row
+                 ///< scans leave the motion in doubt, the pose is uncertain against the one 10 m
+                 ///< before, or too few good alignments came in a row
   lost,          ///< not aligned: the pose is the prediction; or it was just found to be wrong
 };
 
@@ -56,6 +57,9 @@ struct Estimate {
   /// Two motions fit the last scans, as between two lanes of traffic, or what is taller than
   /// vehicles moves away from its place in the map: status `degraded`.
   bool is_motion_doubtful = false;
+  /// The pose may be off by more than 1 m or 3 degrees (2 sigma) against the one 10 m before in the
+  /// same session, or 300 scans before if it moved less. Then the status is not `tracking`.
+  bool is_uncertain = false;
   /// Good alignments followed each other (core::Confirmation). Else the status is not `tracking`.
   bool is_confirmed = true;
 

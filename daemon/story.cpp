@@ -46,6 +46,7 @@ void Story::note(const PoseReport& report) {
   if (e.status == TrackingStatus::lost) ++poses_.lost;
   if (!report.scan_complete) ++poses_.partial;
   if (e.is_motion_doubtful) ++poses_.doubtful;
+  if (e.is_uncertain && e.status == TrackingStatus::degraded) ++poses_.uncertain;
   if (!e.is_confirmed && e.status == TrackingStatus::degraded) ++poses_.unconfirmed;
   if (e.weak_count > 0 && e.weak_directions[0].from_scan < poses_.weakest_from_scan) {
     poses_.weakest_from_scan = e.weak_directions[0].from_scan;
@@ -189,6 +190,7 @@ std::string Story::why_degraded() const {
                       kAxes[static_cast<std::size_t>(poses_.weakest_axis)],
                       100.0 * poses_.weakest_from_scan);
   if (poses_.doubtful > 0) why += ", its motion is in doubt (traffic beside the sensor)";
+  if (poses_.uncertain > 0) why += ", over the last 10 m it may be off by 1 m or 3 deg";
   if (poses_.unconfirmed > 0) why += ", too few good alignments in a row";
   if (poses_.partial > 0) why += fmt::format(", {} scans with holes", poses_.partial);
   return why;

@@ -26,7 +26,7 @@ class Story {
  private:
   /// Poses of the second now running.
   struct Poses {
-    int all = 0, initializing = 0, degraded = 0, lost = 0, partial = 0, doubtful = 0,
+    int all = 0, initializing = 0, degraded = 0, lost = 0, partial = 0, doubtful = 0, uncertain = 0,
         unconfirmed = 0;
     double weakest_from_scan = 2.0;  // 2: no direction was weak
     int weakest_axis = 0;

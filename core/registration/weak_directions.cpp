@@ -47,7 +47,9 @@ std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_informa
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of_translation(
       scan_information.bottomRightCorner<3, 3>());
   const Eigen::Vector3d& growing = of_translation.eigenvalues();
-  if (!(registration::kDegenerateRatio * growing[0] < growing[1])) return std::nullopt;
+  const bool is_degenerate =
+      growing[1] > 0.0 && registration::kDegenerateRatio * growing[0] < growing[1];
+  if (!is_degenerate) return std::nullopt;
   return of_translation.eigenvectors().col(0);
 }
 

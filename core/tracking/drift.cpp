@@ -22,6 +22,7 @@ Matrix6d moved_by(const Eigen::Vector3d& by_m) {
 
 void Drift::begin(const Matrix6d& at_start) {
   pose_ = at_start_ = at_start;
+  recent_.clear();
   cross_.setZero();
   of_beams_.setZero();
   of_first_scan_.setZero();
@@ -32,9 +33,15 @@ void Drift::begin(const Matrix6d& at_start) {
 void Drift::move(const Eigen::Vector3d& by_m) {
   const Matrix6d F = moved_by(by_m);
   pose_ = F * pose_ * F.transpose();
+  recent_.move(F, by_m.norm());
   of_beams_ = F * of_beams_ * F.transpose();
   cross_ = F * cross_;
   travelled_m_ += by_m;
+}
+
+void Drift::grow(const Matrix6d& by) {
+  pose_ += by;
+  recent_.grow(by);
 }
 
 void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor,
@@ -42,7 +49,7 @@ void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_
   // An error of one keyframe moves what is seen of the map by its part in it, which is larger in a
   // young map.
   const double part = 1.0 / std::min(keyframes, tracking::kKeyframesInView);
-  pose_ += part * part * alignment;
+  grow(part * part * alignment);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(alignment);
   if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] >= 0.0)) return;
   Matrix6d sensor_to_odom = Matrix6d::Zero();
@@ -51,15 +58,17 @@ void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_
   const Matrix6d gain = tracking::kCorrelatedError * part * eigen.operatorSqrt() * sensor_to_odom;
   cross_ *= std::exp(-1.0 / tracking::kKeyframesInView);
   const Matrix6d shared = gain * cross_.transpose();
-  pose_ += shared + shared.transpose() + gain * gain.transpose();
+  grow(shared + shared.transpose() + gain * gain.transpose());
   cross_ += gain;
 }
 
 // White noise of density q makes a position uncertain by q t^3 / 3: by q t^2 dt more in a moment.
 // The motions have the square root of q.
-void Drift::coast(const Motions& motions, double span_s) {
+void Drift::coast(const Motions& motions, double span_s, bool counts_as_recent) {
   coasted_s_ += span_s;
-  pose_ += coasted_s_ * coasted_s_ * span_s * motions * motions.transpose();
+  const Matrix6d by = coasted_s_ * coasted_s_ * span_s * motions * motions.transpose();
+  pose_ += by;
+  if (counts_as_recent) recent_.grow(by);
 }
 
 // One scan that tells little more than nothing does not restore the velocity.

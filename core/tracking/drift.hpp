@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/pose.hpp"
+#include "core/tracking/recent_drift.hpp"
 
 namespace lilo::core {
 
@@ -16,8 +17,8 @@ namespace lilo::core {
 ///   In the sensor's axes it is a first-order Gauss-Markov process (Gelb, Applied Optimal
 ///   Estimation, 1974, chapter 3) that augments the pose.
 /// - An error of attitude turns into an error of position as the sensor moves on.
-/// - Along a direction of which scans tell next to nothing the motion is dead reckoned, and along
-///   the ground where the odometry may have followed traffic.
+/// - Along a direction of which scans tell next to nothing the motion is dead reckoned, also along
+///   that of a degenerate scan, and along the ground where the odometry may have followed traffic.
 /// - Errors of the beams that are not known bend the path.
 ///
 /// The scale of the path is uncertain as well: what is seen of an object moves a little with the
@@ -38,11 +39,13 @@ class Drift {
   /// map of so many keyframes.
   void inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor, int keyframes);
 
-  /// Motions as columns, rotation then translation (odometry's axes), or zero: each with the square
+  /// Motions as columns (three weak ones and two along the ground), or zero; rotation then
+  /// translation, in the odometry's axes: each with the square
   /// root of its process noise (rad/s^1.5, m/s^1.5). In a bend the sensor turns as it moves along.
   using Motions = Eigen::Matrix<double, 6, 5>;
   /// For `span_s` nothing was known of the motion along these but its process noise.
-  void coast(const Motions& motions, double span_s);
+  /// `counts_as_recent`: for recent() as well.
+  void coast(const Motions& motions, double span_s, bool counts_as_recent);
   /// For `span_s` a scan told of all translations.
   void see(double span_s);
   /// The covariance of the error with which the first scan entered the map, about the origin, where
@@ -52,14 +55,20 @@ class Drift {
   void set_beam_covariance(const Matrix6d& covariance) { of_beams_ = covariance; }
 
   [[nodiscard]] Matrix6d covariance() const;
+  /// What it grew by over the last 10 m (RecentDrift), without what coast() left out, the path's
+  /// scale, the beams and the first scan.
+  [[nodiscard]] Matrix6d recent() const { return recent_.covariance(); }
 
  private:
+  void grow(const Matrix6d& by);
+
   Matrix6d pose_ = Matrix6d::Zero();   // without the path's scale, the beams and the first scan
   Matrix6d cross_ = Matrix6d::Zero();  // covariance of the pose with the correlated error
   Matrix6d of_beams_ = Matrix6d::Zero();
   Matrix6d of_first_scan_ = Matrix6d::Zero();
   Eigen::Vector3d travelled_m_ = Eigen::Vector3d::Zero();  // since the map was begun
   Matrix6d at_start_ = Matrix6d::Zero();
+  RecentDrift recent_;      // of pose_
   double coasted_s_ = 0.0;  // time of dead reckoning, less the time seen since
 };
 

@@ -32,6 +32,8 @@ class LocalOdometry {
   [[nodiscard]] const MotionState& reported() const { return reported_; }
   /// Of the reported pose.
   [[nodiscard]] Matrix6d covariance() const { return uncertainty_.covariance(reported_); }
+  /// Of the reported pose, as in PoseUncertainty.
+  [[nodiscard]] bool is_uncertain() const { return uncertainty_.is_uncertain(reported_); }
   [[nodiscard]] const KeyframeMap& map() const { return map_; }
 
   [[nodiscard]] Prior predict(const ScanTiming& scan) const {

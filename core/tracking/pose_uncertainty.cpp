@@ -104,14 +104,15 @@ void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state
   const Vector6d shared = mean_by_kind(density);
   Drift::Motions motions = Drift::Motions::Zero();
   int count = add_dead_reckoned(all, state.T_odom_sensor.rotation, shared, motions);
+  const bool is_reported = count > 0 && !may_follow_traffic;  // as weak, and by nothing else
   const std::optional<Eigen::Vector3d> degenerate = degenerate_direction(data_information_);
   if (may_follow_traffic) {
     for (const int axis : {3, 4}) motions(axis, count++) = std::sqrt(shared[axis]);
-  } else if (degenerate && count == 0) {
+  } else if (degenerate && !is_reported) {
     motions.col(count++).tail<3>() = std::sqrt(shared[3]) * *degenerate;
   }
   if (count > 0) {
-    drift_.coast(motions, span_s);
+    drift_.coast(motions, span_s, !is_reported);
   } else if (std::none_of(all.begin(), all.end(), is_translation)) {
     drift_.see(span_s);
   }
@@ -143,6 +144,15 @@ Matrix6d PoseUncertainty::without_drift(const MotionState& state) const {
   if (!last_aligned_) return of_alignment(state);
   return last_aligned_->covariance + last_aligned_->over_gaps +
          positive_part(pose_covariance(state) - last_aligned_->of_state);
+}
+
+bool PoseUncertainty::is_uncertain(const MotionState& state) const {
+  const Matrix6d recent = drift_.recent() + without_drift(state);
+  const double angle_rad2 = recent.topLeftCorner<3, 3>().trace();
+  const double distance_m2 = recent.bottomRightCorner<3, 3>().trace();
+  const bool is_certain = angle_rad2 <= tracking::kTrusted_rad * tracking::kTrusted_rad &&
+                          distance_m2 <= tracking::kTrusted_m * tracking::kTrusted_m;
+  return !is_certain;  // nor is what is no number
 }
 
 Matrix6d PoseUncertainty::covariance(const MotionState& state) const {

@@ -49,6 +49,10 @@ class PoseUncertainty {
 
   /// Of the pose since the first scan, in the sensor's axes.
   [[nodiscard]] Matrix6d covariance(const MotionState& state) const;
+  /// Whether the pose may be off by more than 1 m or 3 degrees against the one 10 m before
+  /// (RecentDrift): two of its standard errors, of the distance and of the angle. What was dead
+  /// reckoned along weak directions alone is not in it: they are reported themselves.
+  [[nodiscard]] bool is_uncertain(const MotionState& state) const;
 
  private:
   /// The covariance of the last alignment and that of its state; those of all gaps since then.

@@ -273,7 +273,7 @@ bool Tracker::check_motion() {
   return motion_check_.compare(least_known_axis(solution));
 }
 
-/// Decides whether the session is over.
+/// Checks the motion, and decides whether the session is over.
 void Tracker::watch_session() {
   if (alignment_.is_explained) {
     session_.unexplained_scans = 0;
@@ -325,8 +325,10 @@ Estimate Tracker::estimate(const Scan& scan) const {
   e.weak_directions = weak.all;
   e.weak_count = weak.count;
   e.is_motion_doubtful = is_motion_doubtful(motion_check_, tall_structure_);
+  e.is_uncertain = !is_lost() && local_.is_uncertain();
   e.is_confirmed = confirmation_.is_confirmed();
-  const bool is_doubtful = weak.count > 0 || e.is_motion_doubtful || !e.is_confirmed;
+  const bool is_doubtful =
+      weak.count > 0 || e.is_motion_doubtful || e.is_uncertain || !e.is_confirmed;
   if (is_doubtful && e.status == TrackingStatus::tracking) e.status = TrackingStatus::degraded;
   e.covariance = translation_first(local_.covariance());
   e.has_covariance = e.covariance.allFinite();

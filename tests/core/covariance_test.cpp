@@ -200,11 +200,17 @@ TEST(Drift, WhatNoScanTellsIsDeadReckoned) {
   core::Drift drift;
   core::Drift::Motions motions = core::Drift::Motions::Zero();
   motions.col(0).tail<3>() = std::sqrt(kDensity) * Eigen::Vector3d(0.6, 0.8, 0.0);
-  for (int scan = 0; scan < 1000; ++scan) drift.coast(motions, kScan_s);
+  for (int scan = 0; scan < 1000; ++scan) drift.coast(motions, kScan_s, true);
   const Matrix6d covariance = drift.covariance();
   EXPECT_NEAR(covariance(3, 3) / (0.36 * kDensity * 1000.0 / 3.0), 1.0, 0.01);
   EXPECT_NEAR(covariance(4, 4) / (0.64 * kDensity * 1000.0 / 3.0), 1.0, 0.01);
   EXPECT_EQ(covariance(5, 5), 0.0);
+  EXPECT_EQ(drift.recent(), covariance);
+  drift.coast(motions, kScan_s, false);
+  EXPECT_EQ(drift.recent(), covariance);
+  EXPECT_GT(drift.covariance()(3, 3), covariance(3, 3));
+  drift.rewind();
+  EXPECT_EQ(drift.recent(), Matrix6d::Zero());
 }
 
 // In a bend of 0.1 rad/m an error of a metre along is an error of 0.1 rad.
@@ -212,7 +218,7 @@ TEST(Drift, DeadReckoningInABendTurnsToo) {
   core::Drift drift;
   core::Drift::Motions motions = core::Drift::Motions::Zero();
   motions.col(0) << 0.0, 0.0, 0.1, 1.0, 0.0, 0.0;
-  for (int scan = 0; scan < 100; ++scan) drift.coast(motions, 0.1);
+  for (int scan = 0; scan < 100; ++scan) drift.coast(motions, 0.1, true);
   const Matrix6d covariance = drift.covariance();
   EXPECT_NEAR(covariance(2, 2) / covariance(3, 3), 0.01, 1e-9);
   EXPECT_NEAR(covariance(2, 3) / covariance(3, 3), 0.1, 1e-9);

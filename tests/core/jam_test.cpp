@@ -50,7 +50,7 @@ TEST(Jam, ASensorAtRestStaysWithWhatIsTallerThanVehicles) {
 }
 
 // Thin posts do not hold the sensor at rest, and it follows the vehicles, faster than 5 m/s at
-// last. The posts tell that it does.
+// last. The posts tell that it does, and the covariance counts it.
 TEST(Jam, IsNotTrackingWhileItFollowsVehicles) {
   constexpr double kThin_m = 0.05;
   Odometry odometry{OdometryConfig{}};
@@ -62,6 +62,10 @@ TEST(Jam, IsNotTrackingWhileItFollowsVehicles) {
     const Estimate e = odometry.process(scan);
     off_m = e.T_odom_sensor.translation_m.norm();
     EXPECT_TRUE(off_m < 1.0 || e.status != TrackingStatus::tracking) << off_m << " m, scan " << k;
+    if (off_m < 2.0) continue;  // it takes some scans to be seen
+    EXPECT_TRUE(e.is_uncertain || e.status == TrackingStatus::lost) << off_m << " m, scan " << k;
+    const double sigma_m = std::sqrt(e.covariance.topLeftCorner<2, 2>().trace());
+    EXPECT_LT(off_m, 4.0 * sigma_m) << "scan " << k;
   }
   EXPECT_GT(off_m, 10.0) << "it did not follow them";
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -341,6 +342,51 @@ TEST(PoseUncertainty, AlongTheDirectionOfADegenerateScanTheMotionIsDeadReckoned)
   EXPECT_NEAR(grown(4, 4), 2e-3, 1e-9);  // q t^2 dt of one scan
   EXPECT_NEAR(grown.trace(), grown(4, 4), 1e-9);
   EXPECT_NEAR(grown_with(1.1e7).trace(), 0.0, 1e-9);
+}
+
+// 1 m along each of x and y (1 sigma) after 1 s.
+TEST(PoseUncertainty, IsUncertainUntilTheSensorMovedOn) {
+  PoseUncertainty uncertainty(kDataWeight);
+  EXPECT_FALSE(uncertainty.is_uncertain(exact_state()));
+  for (int scan = 0; scan < 100; ++scan) {
+    uncertainty.learn(WeakDirections{}, exact_state(), Vector6d::Constant(3.0), 0.01, true);
+  }
+  for (double way_m = 0.0; way_m < 13.0; way_m += 0.1) {
+    if (way_m < 9.9 || way_m > 12.6) {
+      EXPECT_EQ(uncertainty.is_uncertain(exact_state()), way_m < 9.9) << way_m;
+    }
+    uncertainty.move({0.0, -0.1, 0.0});
+  }
+  EXPECT_GT(uncertainty.covariance(exact_state())(3, 3), 0.9) << "the drift stays";
+}
+
+// A sensor at rest in a bare field may be so for seconds. While a direction is weak it is reported.
+TEST(PoseUncertainty, AWeakDirectionAloneMakesNoPoseUncertain) {
+  PoseUncertainty uncertainty(kDataWeight);
+  const WeakDirections weak = weak_along(six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0));
+  for (int scan = 0; scan < 20; ++scan) {
+    uncertainty.learn(weak, exact_state(), Vector6d::Constant(3.0), kScan_s);
+  }
+  EXPECT_GT(uncertainty.covariance(exact_state())(3, 3), 1.0);
+  EXPECT_FALSE(uncertainty.is_uncertain(exact_state()));
+}
+
+TEST(PoseUncertainty, WhatIsNoNumberIsUncertain) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(PoseUncertainty(kDataWeight).is_uncertain(state_of(Vector6d::Constant(none))));
+}
+
+// 1.5 degrees are 0.0262 rad: about one axis, or 0.0151 about each of three. And 0.5 m.
+TEST(PoseUncertainty, IsUncertainByTheAlignmentAlone) {
+  PoseUncertainty uncertainty(kDataWeight);
+  const auto is_uncertain = [&](double angle_rad, double distance_m) {
+    const double angle = angle_rad * angle_rad, distance = distance_m * distance_m;
+    return uncertainty.is_uncertain(
+        state_of(six(angle, angle, angle, distance, 1e-9, 1e-9) / kUnit / kLeastDesignEffect));
+  };
+  EXPECT_FALSE(is_uncertain(0.0149, 0.49));
+  EXPECT_TRUE(is_uncertain(0.0153, 0.1));
+  EXPECT_TRUE(is_uncertain(0.001, 0.51));
 }
 
 TEST(PoseUncertainty, WeaknessThatMostlyTurnsIsNotDeadReckoned) {

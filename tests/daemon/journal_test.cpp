@@ -151,6 +151,19 @@ TEST_F(StoryTest, SaysThatTheMotionIsInDoubt) {
       << degraded;
 }
 
+TEST_F(StoryTest, SaysThatTheLastMetresAreUncertain) {
+  second();
+  poses(10, TrackingStatus::tracking);
+  second();
+  report_.estimate.is_uncertain = true;
+  poses(10, TrackingStatus::degraded);
+  const std::string degraded = second();
+  EXPECT_NE(
+      degraded.find("degraded: 10 of 10 poses, over the last 10 m it may be off by 1 m or 3 deg"),
+      std::string::npos)
+      << degraded;
+}
+
 TEST_F(StoryTest, SaysThatTheSessionIsNotConfirmed) {
   second();
   poses(10, TrackingStatus::tracking);

@@ -8,7 +8,7 @@ const WORDS = { initializing: "Initializing", tracking: "Tracking", degraded: "D
 const MEANINGS = {
   initializing: "No map yet, or not sure of the first motion.",
   tracking: "Aligned with the map.",
-  degraded: "Aligned, but not surely: held to the prediction in some direction, data were missing, or it fits poorly.",
+  degraded: "Aligned, but not surely: held to the prediction in some direction, data were missing, it fits poorly, its motion is in doubt, or its last 10 m are uncertain.",
   lost: "Not aligned: the pose is the prediction alone.",
 };
 /** Of health: why there are no poses. */
