@@ -101,6 +101,7 @@ void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {
 void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state,
                             const Vector6d& density, double span_s, bool may_follow_traffic) {
   const std::span all = std::span(weak.all).first(static_cast<std::size_t>(weak.count));
+  const bool sees_all = std::none_of(all.begin(), all.end(), is_translation);
   const Vector6d shared = mean_by_kind(density);
   Drift::Motions motions = Drift::Motions::Zero();
   int count = add_dead_reckoned(all, state.T_odom_sensor.rotation, shared, motions);
@@ -108,12 +109,12 @@ void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state
   const std::optional<Eigen::Vector3d> degenerate = degenerate_direction(data_information_);
   if (may_follow_traffic) {
     for (const int axis : {3, 4}) motions(axis, count++) = std::sqrt(shared[axis]);
-  } else if (degenerate && !is_reported) {
+  } else if (degenerate && !is_reported && !sees_all) {
     motions.col(count++).tail<3>() = std::sqrt(shared[3]) * *degenerate;
   }
   if (count > 0) {
     drift_.coast(motions, span_s, !is_reported);
-  } else if (std::none_of(all.begin(), all.end(), is_translation)) {
+  } else if (sees_all) {
     drift_.see(span_s);
   }
 }

@@ -36,8 +36,9 @@ class PoseUncertainty {
   void predict(const MotionState& state, const Matrix6d& over_gap);
   /// The weak directions (sensor's axes) of a scan that lasted `span_s`; `density`: process noise.
   /// Along those of which the scan tells next to nothing the motion is dead reckoned
-  /// (is_dead_reckoned()). So it is along the one direction of a degenerate scan, and, if the
-  /// odometry `may_follow_traffic`, along the ground: what seems to be known there may be false.
+  /// (is_dead_reckoned()). So it is along the one direction of a degenerate scan, if a translation
+  /// is weak, and, if the odometry `may_follow_traffic`, along the ground: what seems to be known
+  /// there may be false.
   void learn(const WeakDirections& weak, const MotionState& state, const Vector6d& density,
              double span_s, bool may_follow_traffic = false);
   /// The sensor has moved on.
