@@ -39,17 +39,17 @@ void Drift::move(const Eigen::Vector3d& by_m) {
   travelled_m_ += by_m;
 }
 
-void Drift::grow(const Matrix6d& by) {
+void Drift::grow(const Matrix6d& by, bool counts_as_recent) {
   pose_ += by;
-  recent_.grow(by);
+  if (counts_as_recent) recent_.grow(by);
 }
 
 void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor,
-                    int keyframes) {
+                    int keyframes, bool counts_as_recent) {
   // An error of one keyframe moves what is seen of the map by its part in it, which is larger in a
   // young map.
   const double part = 1.0 / std::min(keyframes, tracking::kKeyframesInView);
-  grow(part * part * alignment);
+  grow(part * part * alignment, counts_as_recent);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(alignment);
   if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] >= 0.0)) return;
   Matrix6d sensor_to_odom = Matrix6d::Zero();
@@ -58,7 +58,7 @@ void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_
   const Matrix6d gain = tracking::kCorrelatedError * part * eigen.operatorSqrt() * sensor_to_odom;
   cross_ *= std::exp(-1.0 / tracking::kKeyframesInView);
   const Matrix6d shared = gain * cross_.transpose();
-  grow(shared + shared.transpose() + gain * gain.transpose());
+  grow(shared + shared.transpose() + gain * gain.transpose(), counts_as_recent);
   cross_ += gain;
 }
 
@@ -66,9 +66,7 @@ void Drift::inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_
 // The motions have the square root of q.
 void Drift::coast(const Motions& motions, double span_s, bool counts_as_recent) {
   coasted_s_ += span_s;
-  const Matrix6d by = coasted_s_ * coasted_s_ * span_s * motions * motions.transpose();
-  pose_ += by;
-  if (counts_as_recent) recent_.grow(by);
+  grow(coasted_s_ * coasted_s_ * span_s * motions * motions.transpose(), counts_as_recent);
 }
 
 // One scan that tells little more than nothing does not restore the velocity.

@@ -36,8 +36,9 @@ class Drift {
   void move(const Eigen::Vector3d& by_m);
 
   /// A keyframe with this covariance of its alignment, and this attitude of the sensor, enters a
-  /// map of so many keyframes.
-  void inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor, int keyframes);
+  /// map of so many keyframes. `counts_as_recent`: for recent() as well.
+  void inherit(const Matrix6d& alignment, const Eigen::Quaterniond& R_odom_sensor, int keyframes,
+               bool counts_as_recent = true);
 
   /// Motions as columns (three weak ones and two along the ground), or zero; rotation then
   /// translation, in the odometry's axes: each with the square
@@ -55,12 +56,12 @@ class Drift {
   void set_beam_covariance(const Matrix6d& covariance) { of_beams_ = covariance; }
 
   [[nodiscard]] Matrix6d covariance() const;
-  /// What it grew by over the last 10 m (RecentDrift), without what coast() left out, the path's
+  /// What it grew by over the last 10 m (RecentDrift), without what was left out, the path's
   /// scale, the beams and the first scan.
   [[nodiscard]] Matrix6d recent() const { return recent_.covariance(); }
 
  private:
-  void grow(const Matrix6d& by);
+  void grow(const Matrix6d& by, bool counts_as_recent);
 
   Matrix6d pose_ = Matrix6d::Zero();   // without the path's scale, the beams and the first scan
   Matrix6d cross_ = Matrix6d::Zero();  // covariance of the pose with the correlated error

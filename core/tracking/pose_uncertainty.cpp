@@ -95,12 +95,13 @@ void PoseUncertainty::learn_start(const Vector6d& density, double span_s) {
 }
 
 void PoseUncertainty::add_keyframe(const MotionState& state, int keyframes) {
-  drift_.inherit(of_alignment(state), state.T_odom_sensor.rotation, keyframes);
+  drift_.inherit(of_alignment(state), state.T_odom_sensor.rotation, keyframes, !is_weak_);
 }
 
 void PoseUncertainty::learn(const WeakDirections& weak, const MotionState& state,
                             const Vector6d& density, double span_s, bool may_follow_traffic) {
   const std::span all = std::span(weak.all).first(static_cast<std::size_t>(weak.count));
+  is_weak_ = !all.empty() && !may_follow_traffic;
   const bool sees_all = std::none_of(all.begin(), all.end(), is_translation);
   const Vector6d shared = mean_by_kind(density);
   Drift::Motions motions = Drift::Motions::Zero();

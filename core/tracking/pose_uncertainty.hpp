@@ -51,8 +51,8 @@ class PoseUncertainty {
   /// Of the pose since the first scan, in the sensor's axes.
   [[nodiscard]] Matrix6d covariance(const MotionState& state) const;
   /// Whether the pose may be off by more than 1 m or 3 degrees against the one 10 m before
-  /// (RecentDrift): two of its standard errors, of the distance and of the angle. What was dead
-  /// reckoned along weak directions alone is not in it: they are reported themselves.
+  /// (RecentDrift): two of its standard errors, of the distance and of the angle. What came with
+  /// a weak direction is not in it: that is reported itself, and what is seen next may know better.
   [[nodiscard]] bool is_uncertain(const MotionState& state) const;
 
  private:
@@ -70,6 +70,7 @@ class PoseUncertainty {
   /// Of the last scan, as the solver weights it. Before there is one, all is taken for the scan's.
   Matrix6d data_information_ = 1e12 * Matrix6d::Identity();
   std::optional<LastAligned> last_aligned_;  // none: it is the state
+  bool is_weak_ = false;  // the last scan was, along directions that are reported
   Drift drift_;
 };
 

@@ -375,6 +375,19 @@ TEST(PoseUncertainty, AWeakDirectionAloneMakesNoPoseUncertain) {
   EXPECT_FALSE(uncertainty.is_uncertain(exact_state()));
 }
 
+// A keyframe of bare ground does not tell yaw. Where walls are seen again, the map knows better.
+TEST(PoseUncertainty, AKeyframeMakesThePoseUncertainUnlessADirectionWasWeak) {
+  for (const bool is_weak : {false, true}) {
+    PoseUncertainty uncertainty(kDataWeight);
+    const WeakDirections yaw = weak_along(six(0.0, 0.0, 0.0, 0.0, 0.0, 1.0));
+    uncertainty.learn(is_weak ? yaw : WeakDirections{}, exact_state(), Vector6d::Ones(), kScan_s);
+    const Vector6d without_yaw = six(1e-9, 1e-9, 1.0, 1e-9, 1e-9, 1e-9);
+    uncertainty.add_keyframe(state_of(without_yaw), 2);
+    EXPECT_EQ(uncertainty.is_uncertain(exact_state()), !is_weak) << is_weak;
+    EXPECT_GT(uncertainty.covariance(exact_state())(2, 2), 1e-3);
+  }
+}
+
 TEST(PoseUncertainty, WhatIsNoNumberIsUncertain) {
   const double none = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(PoseUncertainty(kDataWeight).is_uncertain(state_of(Vector6d::Constant(none))));
