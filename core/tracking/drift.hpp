@@ -41,8 +41,8 @@ class Drift {
                bool counts_as_recent = true);
 
   /// Motions as columns (three weak ones and two along the ground), or zero; rotation then
-  /// translation, in the odometry's axes: each with the square
-  /// root of its process noise (rad/s^1.5, m/s^1.5). In a bend the sensor turns as it moves along.
+  /// translation, in the odometry's axes: each with the square root of its process noise
+  /// (rad/s^1.5, m/s^1.5). In a bend the sensor turns as it moves along.
   using Motions = Eigen::Matrix<double, 6, 5>;
   /// For `span_s` nothing was known of the motion along these but its process noise.
   /// `counts_as_recent`: for recent() as well.

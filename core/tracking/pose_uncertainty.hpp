@@ -53,6 +53,7 @@ class PoseUncertainty {
   /// Whether the pose may be off by more than 1 m or 3 degrees against the one 10 m before
   /// (RecentDrift): two of its standard errors, of the distance and of the angle. What came with
   /// a weak direction is not in it: that is reported itself, and what is seen next may know better.
+  /// But what a degenerate scan may tell falsely is.
   [[nodiscard]] bool is_uncertain(const MotionState& state) const;
 
  private:
