@@ -1,52 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/tracking/pose_uncertainty.hpp"
 
+#include "tests/core/uncertain_states.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
 
 namespace lilo::core {
 namespace {
-
-// A scan counts its residuals by this weight, and three scans share the error of a cell: the
-// variance by independent residuals counts 0.3 times for each unit of the design effect.
-constexpr double kDataWeight = 0.1, kUnit = 3.0 * kDataWeight;
-constexpr double kLeastDesignEffect = 0.05;
-constexpr double kScan_s = 0.1;
-constexpr int kOldMap = 100;  // keyframes: each is a thirteenth of what is seen
-
-const Eigen::Quaterniond kLeft(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
-
-/// A scan that tells the whole pose.
-const Matrix6d kAllFromScan = 1e12 * Matrix6d::Identity();
-
-/// A state whose pose has these variances by its information (rotation, translation).
-MotionState state_of(const Vector6d& variance) {
-  MotionState state;
-  state.information = KnotInformation::Identity();
-  state.information.topLeftCorner<6, 6>().diagonal() = variance.cwiseInverse();
-  return state;
-}
-
-MotionState exact_state() { return state_of(Vector6d::Constant(1e-18)); }
-
-Vector6d six(double rx, double ry, double rz, double x, double y, double z) {
-  Vector6d v;
-  v << rx, ry, rz, x, y, z;
-  return v;
-}
-
-/// A direction, translation first, of which a scan says nothing.
-WeakDirections weak_along(const Vector6d& direction) {
-  WeakDirections weak;
-  weak.count = 1;
-  weak.all[0].direction = direction;
-  return weak;
-}
 
 /// Two scans of a sensor whose acceleration is white noise of density one. The first one is
 /// deskewed at the velocity from its end to the end of the second one, which is aligned with it.
@@ -346,64 +311,6 @@ TEST(PoseUncertainty, AlongTheDirectionOfADegenerateScanTheMotionIsDeadReckoned)
   EXPECT_NEAR(grown.trace(), grown(4, 4), 1e-9);
   EXPECT_NEAR(grown_with(1.1e7, third).trace(), 0.0, 1e-9);
   EXPECT_NEAR(grown_with(0.9e7, WeakDirections{}).trace(), 0.0, 1e-9);
-}
-
-// 1 m along each of x and y (1 sigma) after 1 s.
-TEST(PoseUncertainty, IsUncertainUntilTheSensorMovedOn) {
-  PoseUncertainty uncertainty(kDataWeight);
-  EXPECT_FALSE(uncertainty.is_uncertain(exact_state()));
-  for (int scan = 0; scan < 100; ++scan) {
-    uncertainty.learn(WeakDirections{}, exact_state(), Vector6d::Constant(3.0), 0.01, true);
-  }
-  for (double way_m = 0.0; way_m < 13.0; way_m += 0.1) {
-    if (way_m < 9.9 || way_m > 12.6) {
-      EXPECT_EQ(uncertainty.is_uncertain(exact_state()), way_m < 9.9) << way_m;
-    }
-    uncertainty.move({0.0, -0.1, 0.0});
-  }
-  EXPECT_GT(uncertainty.covariance(exact_state())(3, 3), 0.9) << "the drift stays";
-}
-
-// A sensor at rest in a bare field may be so for seconds. While a direction is weak it is reported.
-TEST(PoseUncertainty, AWeakDirectionAloneMakesNoPoseUncertain) {
-  PoseUncertainty uncertainty(kDataWeight);
-  const WeakDirections weak = weak_along(six(1.0, 0.0, 0.0, 0.0, 0.0, 0.0));
-  for (int scan = 0; scan < 20; ++scan) {
-    uncertainty.learn(weak, exact_state(), Vector6d::Constant(3.0), kScan_s);
-  }
-  EXPECT_GT(uncertainty.covariance(exact_state())(3, 3), 1.0);
-  EXPECT_FALSE(uncertainty.is_uncertain(exact_state()));
-}
-
-// A keyframe of bare ground does not tell yaw. Where walls are seen again, the map knows better.
-TEST(PoseUncertainty, AKeyframeMakesThePoseUncertainUnlessADirectionWasWeak) {
-  for (const bool is_weak : {false, true}) {
-    PoseUncertainty uncertainty(kDataWeight);
-    const WeakDirections yaw = weak_along(six(0.0, 0.0, 0.0, 0.0, 0.0, 1.0));
-    uncertainty.learn(is_weak ? yaw : WeakDirections{}, exact_state(), Vector6d::Ones(), kScan_s);
-    const Vector6d without_yaw = six(1e-9, 1e-9, 1.0, 1e-9, 1e-9, 1e-9);
-    uncertainty.add_keyframe(state_of(without_yaw), 2);
-    EXPECT_EQ(uncertainty.is_uncertain(exact_state()), !is_weak) << is_weak;
-    EXPECT_GT(uncertainty.covariance(exact_state())(2, 2), 1e-3);
-  }
-}
-
-TEST(PoseUncertainty, WhatIsNoNumberIsUncertain) {
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(PoseUncertainty(kDataWeight).is_uncertain(state_of(Vector6d::Constant(none))));
-}
-
-// 1.5 degrees are 0.0262 rad: about one axis, or 0.0151 about each of three. And 0.5 m.
-TEST(PoseUncertainty, IsUncertainByTheAlignmentAlone) {
-  PoseUncertainty uncertainty(kDataWeight);
-  const auto is_uncertain = [&](double angle_rad, double distance_m) {
-    const double angle = angle_rad * angle_rad, distance = distance_m * distance_m;
-    return uncertainty.is_uncertain(
-        state_of(six(angle, angle, angle, distance, 1e-9, 1e-9) / kUnit / kLeastDesignEffect));
-  };
-  EXPECT_FALSE(is_uncertain(0.0149, 0.49));
-  EXPECT_TRUE(is_uncertain(0.0153, 0.1));
-  EXPECT_TRUE(is_uncertain(0.001, 0.51));
 }
 
 TEST(PoseUncertainty, WeaknessThatMostlyTurnsIsNotDeadReckoned) {
