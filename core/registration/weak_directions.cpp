@@ -49,8 +49,10 @@ std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_informa
   const Eigen::Vector3d& growing = of_translation.eigenvalues();
   const bool is_degenerate =
       growing[1] > 0.0 && registration::kDegenerateRatio * growing[0] < growing[1];
-  if (!is_degenerate) return std::nullopt;
-  return of_translation.eigenvectors().col(0);
+  const Eigen::Vector3d direction = of_translation.eigenvectors().col(0);
+  const bool rises = std::abs(direction.z()) > direction.head<2>().norm();
+  if (!is_degenerate || rises) return std::nullopt;
+  return direction;
 }
 
 DeadReckoning::DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information) {

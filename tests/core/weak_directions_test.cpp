@@ -158,6 +158,20 @@ TEST(DegenerateDirection, IsTheOneAlongWhichLeastIsTold) {
   EXPECT_FALSE(core::degenerate_direction(Matrix6d::Zero()));
 }
 
+TEST(DegenerateDirection, IsNoneThatRises) {
+  const auto rising_by = [](double angle_rad) {
+    const Eigen::Matrix3d R(Eigen::AngleAxisd(-angle_rad, Eigen::Vector3d::UnitY()));
+    Matrix6d information = Matrix6d::Identity();
+    information.bottomRightCorner<3, 3>() =
+        R * Eigen::Vector3d(1.0, 1000.0, 2000.0).asDiagonal() * R.transpose();
+    return core::degenerate_direction(information);
+  };
+  constexpr double kDegree_rad = std::numbers::pi / 180.0;
+  EXPECT_TRUE(rising_by(44.0 * kDegree_rad)) << "a steep tunnel";
+  EXPECT_FALSE(rising_by(46.0 * kDegree_rad));
+  EXPECT_FALSE(rising_by(90.0 * kDegree_rad)) << "a room of which little of the floor is seen";
+}
+
 TEST(WeakDirections, AlongATunnel) {
   const Estimate e = drive_through(test::tunnel());
   ASSERT_EQ(e.weak_count, 1);
