@@ -11,20 +11,28 @@
 
 namespace lilo::core {
 
-void TallStructure::observe(const TallEquations& scan, bool is_doubted, std::int64_t end_ns) {
-  if (scan.is_slow) {
-    information_ += tracking::kTallSmoothing * (scan.information - information_);
-    gradient_ += tracking::kTallSmoothing * (scan.gradient - gradient_);
-    scans_elsewhere_ = is_elsewhere() ? scans_elsewhere_ + 1 : 0;
-  } else {
+std::optional<TallEquations> tall_equations(const Solution& solution, bool is_lost, bool is_room) {
+  if (is_room) return TallEquations{};
+  if (is_lost || !solution.converged) return std::nullopt;
+  return solution.tall;
+}
+
+void TallStructure::observe(const std::optional<TallEquations>& scan, bool is_doubted,
+                            std::int64_t end_ns) {
+  if (scan) is_slow_ = scan->is_slow;
+  if (!is_slow_) {
     forget_scans();
+  } else if (scan) {
+    information_ += tracking::kTallSmoothing * (scan->information - information_);
+    gradient_ += tracking::kTallSmoothing * (scan->gradient - gradient_);
+    scans_elsewhere_ = is_elsewhere() ? scans_elsewhere_ + 1 : 0;
   }
   if (is_doubted || disagrees()) doubted_ns_ = end_ns;
   if (doubted_ns_) {
     const double since_s = seconds_between(*doubted_ns_, end_ns);
     if (since_s < 0.0 || since_s >= tracking::kTraffic_s) doubted_ns_.reset();
   }
-  is_missing_ = scan.is_slow && doubted_ns_ && !confirms();
+  is_missing_ = is_slow_ && doubted_ns_ && !confirms();
 }
 
 void TallStructure::forget_scans() {

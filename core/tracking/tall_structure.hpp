@@ -10,6 +10,11 @@
 
 namespace lilo::core {
 
+/// What the tall structure of a scan tells of its place. None if the scan is lost, or did not
+/// converge, so that residuals may be large. In rooms all is nothing, as of a fast sensor: few are
+/// that tall, and no vehicles drive there.
+std::optional<TallEquations> tall_equations(const Solution& solution, bool is_lost, bool is_room);
+
 /// What structure taller than any vehicle says of the motion of a slow sensor. Vehicles around it
 /// may be most of what it sees, and the alignment may follow them. Then what is taller moves away
 /// from its place in the map.
@@ -17,10 +22,10 @@ namespace lilo::core {
 /// Not thread-safe; no allocation.
 class TallStructure {
  public:
-  /// The next scan, at its alignment. Of a fast sensor nothing is kept. `is_doubted`: another
-  /// motion fits, or fitted better. `end_ns`: of the scan. Where the clock was set back, an older
-  /// doubt is dropped.
-  void observe(const TallEquations& scan, bool is_doubted, std::int64_t end_ns);
+  /// The next scan, at its alignment; none: its residuals tell no place, and what earlier scans
+  /// told stays. Of a fast sensor nothing is kept. `is_doubted`: another motion fits, or fitted
+  /// better. `end_ns`: of the scan. Where the clock was set back, an older doubt is dropped.
+  void observe(const std::optional<TallEquations>& scan, bool is_doubted, std::int64_t end_ns);
   /// On a new map. That there was a doubt stays known.
   void forget_scans();
 
@@ -38,6 +43,7 @@ class TallStructure {
   Eigen::Matrix2d information_ = Eigen::Matrix2d::Zero();
   Eigen::Vector2d gradient_ = Eigen::Vector2d::Zero();
   int scans_elsewhere_ = 0;  // in a row
+  bool is_slow_ = false;     // by the last scan that told
   std::optional<std::int64_t> doubted_ns_;
   bool is_missing_ = false;
 };

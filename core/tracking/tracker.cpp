@@ -286,9 +286,7 @@ void Tracker::watch_session() {
   } else if (motion_check_.ambiguity_ended() && alignment_.status == TrackingStatus::tracking) {
     alignment_.status = TrackingStatus::degraded;
   }
-  // Few rooms are that tall, and no vehicles drive there. Not converged, residuals may be large.
-  const bool tells_place = !is_lost() && !scan_.is_room && alignment_.solution.converged;
-  tall_structure_.observe(tells_place ? alignment_.solution.tall : TallEquations{},
+  tall_structure_.observe(tall_equations(alignment_.solution, is_lost(), scan_.is_room),
                           motion_check_.is_ambiguous() || alignment_.is_refuted,
                           scan_.timing.end_ns);
   session_.is_over = alignment_.is_refuted || motion_check_.ambiguity_ended() ||

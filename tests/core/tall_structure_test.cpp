@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 namespace lilo::core {
 namespace {
 
@@ -46,6 +48,30 @@ TEST(TallStructure, TwoScansAreNoDisagreement) {
   EXPECT_FALSE(structure.disagrees());
   structure.observe(elsewhere, false, 2 * kSecond_ns / 10);
   EXPECT_TRUE(structure.disagrees());
+}
+
+TEST(TallStructure, AScanThatTellsNoPlaceChangesNothing) {
+  TallStructure structure;
+  observe(structure, places_it({5.0, 0.0}, 0.01, 0.01), 0.0);
+  ASSERT_TRUE(structure.disagrees());
+  structure.observe(std::nullopt, false, 2 * kSecond_ns);
+  EXPECT_TRUE(structure.disagrees());
+  EXPECT_TRUE(structure.is_missing());
+  structure.forget_scans();
+  structure.observe(std::nullopt, false, 3 * kSecond_ns);
+  EXPECT_FALSE(structure.disagrees());
+  EXPECT_TRUE(structure.is_missing()) << "the doubt stays";
+}
+
+TEST(TallStructure, TellsNoPlaceWhereAScanIsLostOrDidNotConverge) {
+  Solution solution;
+  solution.tall = places_it({0.0, 0.0}, 0.1, 0.1);
+  solution.converged = true;
+  EXPECT_TRUE(tall_equations(solution, /*is_lost=*/false, /*is_room=*/false)->is_slow);
+  EXPECT_FALSE(tall_equations(solution, /*is_lost=*/false, /*is_room=*/true)->is_slow);
+  EXPECT_FALSE(tall_equations(solution, /*is_lost=*/true, /*is_room=*/false));
+  solution.converged = false;
+  EXPECT_FALSE(tall_equations(solution, /*is_lost=*/false, /*is_room=*/false));
 }
 
 TEST(TallStructure, KeepsNothingOfAFastSensor) {
