@@ -193,13 +193,19 @@ bool Initializer::recheck_stationary(LocalOdometry& local) {
   return true;
 }
 
-/// Replays the scans with another motion if all of them agree better under it.
+/// Replays the scans with another motion if all of them agree better under it, or with the tracked
+/// one if the map was begun under another: on bare ground two scans may tell a false motion, which
+/// smears the map, and the next ones the true one.
 bool Initializer::recheck_moving(bool was_lost, LocalOdometry& local) {
   const Twist tracked = tracked_twist();
   const Start other = best_start(tracked, was_lost);
   if (is_elsewhere(other.twist, tracked) &&
       search_.is_better_than_track(other.twist, std::span(tracks_).first(count_))) {
     replay(other, local);
+    assumed_ = other.twist;
+  } else if (differ(assumed_, tracked, search::kSameMotion_mps)) {
+    replay({tracked, tracked.linear_mps, tracking::kSameVelocity_mps, true}, local);
+    assumed_ = tracked;
   }
   return count_ == search::kMotionScans;
 }

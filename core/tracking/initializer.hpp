@@ -22,7 +22,8 @@ namespace lilo::core {
 ///
 ///     1st scan      becomes the map
 ///     2nd           motion searched and refined; stationary or moving, clear or not
-///     3rd to 6th    moving: is another motion better by now? then all scans are replayed with it
+///     3rd to 6th    moving: is another motion better by now? then all scans are replayed with it;
+///                   was the map begun under another than the one tracked? then with this one
 ///     4th           stationary: did it creep after all? then the same
 ///
 /// Not thread-safe; no allocation after construction.
@@ -92,7 +93,7 @@ class Initializer {
   bool is_unambiguous_ = false;  // no other motion fits nearly as well
   bool assumes_stationary_ = false;
   bool was_replayed_ = false;
-  Twist assumed_;  // by the second scan
+  Twist assumed_;  // under which the map was begun
 };
 
 }  // namespace lilo::core
