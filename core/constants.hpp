@@ -229,7 +229,7 @@ inline constexpr int kRefinements = 3;
 inline constexpr double kLeastSearchedShare = 0.3;
 /// m/s, 1 sigma of a velocity that was searched; of a doubtful one. Range: 2 to 8.
 inline constexpr double kSearchedVelocity_mps = 1.0, kUnknownVelocity_mps = 4.0;
-/// m/s: motions nearer to each other count as one.
+/// m/s: motions nearer to each other count as one; a map begun under another is begun again.
 inline constexpr double kSameMotion_mps = 3.0;
 
 /// m/s: how far off the motions are that are tested against the one tracked.

@@ -47,12 +47,13 @@ std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_informa
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of_translation(
       scan_information.bottomRightCorner<3, 3>());
   const Eigen::Vector3d& growing = of_translation.eigenvalues();
+  const Eigen::Vector3d least = of_translation.eigenvectors().col(0);
+  const bool rises = std::abs(least.z()) > least.head<2>().norm();
+  const Eigen::Index k = rises ? 1 : 0;
   const bool is_degenerate =
-      growing[1] > 0.0 && registration::kDegenerateRatio * growing[0] < growing[1];
-  const Eigen::Vector3d direction = of_translation.eigenvectors().col(0);
-  const bool rises = std::abs(direction.z()) > direction.head<2>().norm();
-  if (!is_degenerate || rises) return std::nullopt;
-  return direction;
+      growing[k + 1] > 0.0 && registration::kDegenerateRatio * growing[k] < growing[k + 1];
+  if (!is_degenerate) return std::nullopt;
+  return of_translation.eigenvectors().col(k);
 }
 
 DeadReckoning::DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information) {

@@ -42,9 +42,9 @@ bool is_any_dead_reckoned(const WeakDirections& weak);
 /// Estimation Problems, ICRA 2016, compare the smallest with a threshold). So a bare field, where
 /// two are small, is not degenerate, and a smooth tunnel is. There what noise seems to tell of the
 /// speed makes the process noise grow, until no direction is weak. The motion model does not enter
-/// here. None if that direction rises by more than 45 degrees: in rooms sixteen beams may see
-/// little of the floor, but nothing there goes up with the sensor. A unit vector along the
-/// odometry's axes, of either sign.
+/// here. A least direction that rises by more than 45 degrees, against the odometry's axes, is left
+/// out, and the other two are compared: in rooms sixteen beams may see little of the floor, but
+/// nothing goes up with the sensor. A unit vector along the odometry's axes, of either sign.
 std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_information);
 
 /// The motion of a pose along its dead reckoned direction, if there is just one. In a bend the

@@ -158,6 +158,7 @@ Solution Initializer::align_second(bool may_be_stationary, LocalOdometry& local)
 /// Takes all scans but the newest again, as though this motion had been known.
 void Initializer::replay(Start start, LocalOdometry& local) {
   was_replayed_ = true;
+  assumed_ = start.twist;
   Solution solution = refine(start, local);
   for (std::size_t k = 1; k + 1 < count_; ++k) {
     Prior prior = local.predict(scans_[k].timing);
@@ -202,10 +203,8 @@ bool Initializer::recheck_moving(bool was_lost, LocalOdometry& local) {
   if (is_elsewhere(other.twist, tracked) &&
       search_.is_better_than_track(other.twist, std::span(tracks_).first(count_))) {
     replay(other, local);
-    assumed_ = other.twist;
-  } else if (differ(assumed_, tracked, search::kSameMotion_mps)) {
+  } else if (!was_lost && differ(assumed_, tracked, search::kSameMotion_mps)) {
     replay({tracked, tracked.linear_mps, tracking::kSameVelocity_mps, true}, local);
-    assumed_ = tracked;
   }
   return count_ == search::kMotionScans;
 }

@@ -12,8 +12,8 @@
 namespace lilo::core {
 
 std::optional<TallEquations> tall_equations(const Solution& solution, bool is_lost, bool is_room) {
-  if (is_room) return TallEquations{};
-  if (is_lost || !solution.converged) return std::nullopt;
+  if (is_lost || is_room) return TallEquations{};
+  if (solution.tall.is_slow && !solution.converged) return std::nullopt;
   return solution.tall;
 }
 
@@ -27,7 +27,7 @@ void TallStructure::observe(const std::optional<TallEquations>& scan, bool is_do
     gradient_ += tracking::kTallSmoothing * (scan->gradient - gradient_);
     scans_elsewhere_ = is_elsewhere() ? scans_elsewhere_ + 1 : 0;
   }
-  if (is_doubted || disagrees()) doubted_ns_ = end_ns;
+  if (is_doubted || (scan && disagrees())) doubted_ns_ = end_ns;
   if (doubted_ns_) {
     const double since_s = seconds_between(*doubted_ns_, end_ns);
     if (since_s < 0.0 || since_s >= tracking::kTraffic_s) doubted_ns_.reset();

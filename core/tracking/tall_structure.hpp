@@ -10,9 +10,9 @@
 
 namespace lilo::core {
 
-/// What the tall structure of a scan tells of its place. None if the scan is lost, or did not
-/// converge, so that residuals may be large. In rooms all is nothing, as of a fast sensor: few are
-/// that tall, and no vehicles drive there.
+/// What the tall structure of a scan tells of its place. None if a slow sensor's scan did not
+/// converge, so that residuals may be large. Of a lost scan all is zero, as of a fast sensor: it
+/// may be found elsewhere. So it is in rooms: few are that tall, and no vehicles drive there.
 std::optional<TallEquations> tall_equations(const Solution& solution, bool is_lost, bool is_room);
 
 /// What structure taller than any vehicle says of the motion of a slow sensor. Vehicles around it

@@ -63,15 +63,35 @@ TEST(TallStructure, AScanThatTellsNoPlaceChangesNothing) {
   EXPECT_TRUE(structure.is_missing()) << "the doubt stays";
 }
 
-TEST(TallStructure, TellsNoPlaceWhereAScanIsLostOrDidNotConverge) {
+TEST(TallStructure, AScanThatTellsNoPlaceNeitherCountsNorInterrupts) {
+  TallStructure structure;
+  const TallEquations elsewhere = places_it({5.0, 0.0}, 0.01, 0.01);
+  structure.observe(elsewhere, false, 0);
+  structure.observe(elsewhere, false, kSecond_ns / 10);
+  structure.observe(std::nullopt, false, 2 * kSecond_ns / 10);
+  EXPECT_FALSE(structure.disagrees());
+  structure.observe(elsewhere, false, 3 * kSecond_ns / 10);
+  EXPECT_TRUE(structure.disagrees());
+}
+
+TEST(TallStructure, ADoubtIsNotRenewedByScansThatTellNoPlace) {
+  TallStructure structure;
+  observe(structure, places_it({5.0, 0.0}, 0.01, 0.01), 0.0);
+  for (int k = 2; k < 40; ++k) structure.observe(std::nullopt, false, k * kSecond_ns);
+  EXPECT_FALSE(structure.is_missing()) << "30 s are over";
+}
+
+TEST(TallStructure, TellsNoPlaceWhereAScanDidNotConverge) {
   Solution solution;
   solution.tall = places_it({0.0, 0.0}, 0.1, 0.1);
   solution.converged = true;
   EXPECT_TRUE(tall_equations(solution, /*is_lost=*/false, /*is_room=*/false)->is_slow);
   EXPECT_FALSE(tall_equations(solution, /*is_lost=*/false, /*is_room=*/true)->is_slow);
-  EXPECT_FALSE(tall_equations(solution, /*is_lost=*/true, /*is_room=*/false));
+  EXPECT_FALSE(tall_equations(solution, /*is_lost=*/true, /*is_room=*/false)->is_slow);
   solution.converged = false;
   EXPECT_FALSE(tall_equations(solution, /*is_lost=*/false, /*is_room=*/false));
+  solution.tall = {};
+  EXPECT_TRUE(tall_equations(solution, /*is_lost=*/false, /*is_room=*/false)) << "a fast sensor";
 }
 
 TEST(TallStructure, KeepsNothingOfAFastSensor) {

@@ -170,6 +170,11 @@ TEST(DegenerateDirection, IsNoneThatRises) {
   EXPECT_TRUE(rising_by(44.0 * kDegree_rad)) << "a steep tunnel";
   EXPECT_FALSE(rising_by(46.0 * kDegree_rad));
   EXPECT_FALSE(rising_by(90.0 * kDegree_rad)) << "a room of which little of the floor is seen";
+  Matrix6d corridor = Matrix6d::Identity();
+  corridor.bottomRightCorner<3, 3>().diagonal() << 150.0, 1e5, 1.0;
+  const auto along = core::degenerate_direction(corridor);
+  ASSERT_TRUE(along);
+  EXPECT_NEAR(std::abs(along->x()), 1.0, 1e-9) << "of its floor, too, little is seen";
 }
 
 TEST(WeakDirections, AlongATunnel) {
