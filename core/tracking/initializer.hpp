@@ -48,9 +48,9 @@ class Initializer {
 
   /// Takes the next scan before it is aligned. Begins the map again with another motion, if all
   /// scans agree better under it, or with the tracked one, if the map was begun under one that is
-  /// far off it. `all`: the features before selection. `was_lost`: the scan before
-  /// was not found in the map. Returns whether the motion is known now: then the scans are
-  /// forgotten, and this one can be aligned like any later one.
+  /// far off it. `all`: the features before selection. `was_lost`: the scan before was not found in
+  /// the map. Returns whether the motion is known now: then the scans are forgotten, and this one
+  /// can be aligned like any later one.
   bool add(const Observation& scan, const std::vector<Feature>& all, bool was_lost,
            LocalOdometry& local);
   /// Aligns the second scan, after add(). `may_be_stationary`: the sensor may be assumed
@@ -94,7 +94,7 @@ class Initializer {
   bool is_unambiguous_ = false;  // no other motion fits nearly as well
   bool assumes_stationary_ = false;
   bool was_replayed_ = false;
-  Twist assumed_;  // with which the map was begun; in a replay before it is refined
+  Twist assumed_;  // under which the map was begun; of a replay, before it was refined
 };
 
 }  // namespace lilo::core
