@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/search/motion_check.hpp"
 
+#include "core/constants.hpp"
 #include "core/search/hypothesis.hpp"
 
 #include <algorithm>
@@ -30,7 +31,12 @@ void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin,
   structure_.assign(features);
   scans_.add(structure_, T_begin, T_end, timing);
   ++scan_count_;
-  if (newest_is_spaced()) spaced_scans_.add(structure_, T_begin, T_end, timing);
+  // Two scans with a gap between them lie on each other under other motions as well, by chance.
+  if (structure_.s.size() < tracking::kMinFeatures) {
+    spaced_scans_.clear();
+  } else if (newest_is_spaced()) {
+    spaced_scans_.add(structure_, T_begin, T_end, timing);
+  }
   count_ambiguous_scans();
 }
 

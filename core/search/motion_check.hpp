@@ -45,7 +45,9 @@ class MotionCheck {
   bool compare(const Eigen::Vector2d& axis);
   /// To be called once after each compare(). Looks for a second minimum over 15 scans
   /// (kAmbiguityStride); none where they share too few cells. `is_dead_reckoned`: along a
-  /// direction, during the newest scan.
+  /// direction, during the newest scan. A scan without structure (kMinFeatures), as on bare ground,
+  /// tells no motion, and those before it are forgotten. Until there are 15 again, what was found
+  /// last stays.
   void observe_ambiguity(const Eigen::Vector2d& axis, bool is_dead_reckoned);
   /// Whether there has been one for some time.
   [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }

@@ -244,6 +244,37 @@ TEST(MotionCheck, ScansWithoutStructureDoNotEndTheSearchForAmbiguity) {
   EXPECT_TRUE(was_ambiguous);
 }
 
+/// The walls of a room of 24 x 14 m, seen from its middle.
+std::vector<Feature> room_scan(std::minstd_rand& random) {
+  std::uniform_real_distribution<double> along(-1.0, 1.0), off_m(-0.02, 0.02);
+  std::vector<Feature> features;
+  for (int k = 0; k < 1000; ++k) {
+    const double x = along(random);
+    const double side = k % 4 < 2 ? 1.0 : -1.0;
+    Feature f{};
+    f.x_m = static_cast<float>(k % 2 == 0 ? 12.0 * x : side * 12.0 + off_m(random));
+    f.y_m = static_cast<float>(k % 2 == 0 ? side * 7.0 + off_m(random) : 7.0 * x);
+    f.s = static_cast<float>(0.5 + 0.5 * along(random));
+    f.kind = FeatureKind::structure;
+    features.push_back(f);
+  }
+  return features;
+}
+
+// Two scans of a room with a second of bare ground between them lie on each other under other
+// motions as well, by chance.
+TEST(MotionCheck, ScansBeforeBareGroundAreNotComparedWithThoseAfterIt) {
+  std::minstd_rand random(3);
+  for (int bare_scans = 1; bare_scans <= 15; ++bare_scans) {
+    MotionCheck check(2000);
+    for (int k = 1; k <= 80; ++k) {
+      const bool is_bare = k > 30 && k <= 30 + bare_scans;
+      take(check, k, is_bare ? std::vector<Feature>() : room_scan(random), 0.0);
+      EXPECT_FALSE(check.is_ambiguous()) << "scan " << k << ", " << bare_scans << " of bare ground";
+    }
+  }
+}
+
 /// Whether it ends when the lanes beside the sensor turn off, and one of so many scans has a weak
 /// direction; 0: none.
 bool ambiguity_ends(int weak_stride) {
