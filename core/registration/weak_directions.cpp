@@ -57,11 +57,12 @@ std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_informa
 }
 
 DeadReckoning::DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information) {
+  if (!degenerate_direction(scan_information)) return;
   const WeakDirections weak =
       weak_directions(scan_information, motion_information, Eigen::Quaterniond::Identity());
   const auto all = std::span(weak.all).first(static_cast<std::size_t>(weak.count));
   const auto one = std::find_if(all.begin(), all.end(), is_dead_reckoned);
-  if (one == all.end() || std::any_of(one + 1, all.end(), is_dead_reckoned)) return;
+  if (one == all.end()) return;
   motion_ << one->direction.tail<3>(), one->direction.head<3>();
   motion_ /= std::sqrt(motion_.dot(motion_information * motion_));
   dual_ = motion_information * motion_;

@@ -27,6 +27,7 @@ struct Drive {
   std::size_t every = 20;  ///< scans from start to start
   sim::Sensor sensor = sim::Sensor::vlp16;
   std::uint64_t seed = 3;
+  bool start_in_motion = true;
 };
 std::ostream& operator<<(std::ostream& out, const Drive& drive) { return out << drive.name; }
 
@@ -37,7 +38,7 @@ Recording recording_of(const Drive& drive) {
   options.sensor.sensor = drive.sensor;
   options.seed = drive.seed;
   options.motion.speed_mps = drive.speed_mps;
-  options.motion.start_in_motion = true;
+  options.motion.start_in_motion = drive.start_in_motion;
   options.motion.duration_s = 12.0;
   return test::simulated(options);
 }
@@ -59,11 +60,11 @@ struct Outcome {
 };
 
 /// Switches on at scan `first`. What counts is how the poses called `tracking` lie to each other.
-Outcome start_at(const Recording& recording, std::size_t first) {
+Outcome start_at(const Recording& recording, std::size_t first, std::size_t scans = kScans) {
   Odometry odometry{OdometryConfig{}};
   Outcome outcome;
   Pose T_odom_first, T_odom_tracked, truth_tracked;
-  for (std::size_t k = 0; k < kScans; ++k) {
+  for (std::size_t k = 0; k < scans; ++k) {
     const Estimate e = odometry.process(recording.scans[first + k]);
     const Pose& truth = recording.truth[first + k];
     if (k == 0) T_odom_first = e.T_odom_sensor;
@@ -77,7 +78,7 @@ Outcome start_at(const Recording& recording, std::size_t first) {
       outcome.worst_m = std::max(outcome.worst_m, error.head<3>().norm());
       outcome.worst_rad = std::max(outcome.worst_rad, error.tail<3>().norm());
     }
-    if (k + 1 == kScans) {
+    if (k + 1 == scans) {
       const Vector6d error = difference(T_odom_first.inverse() * e.T_odom_sensor,
                                         recording.truth[first].inverse() * truth);
       outcome.last_m = error.head<3>().norm();
@@ -118,6 +119,18 @@ TEST(HillStarts, AMapBegunUnderAFalseMotionIsBegunAgain) {
     const Outcome outcome = start_at(hills, 0);
     EXPECT_LT(outcome.squared_error, 6.0 * 4.0) << "seed " << seed;
     EXPECT_LT(outcome.last_m, 1.0) << "seed " << seed << ", 32 m on";
+  }
+}
+
+// The scan tells little along the way and little across it. The vehicle must not be held where it
+// was.
+TEST(FieldStarts, AVehicleThatSetsOffOnBareGroundIsFollowed) {
+  for (const std::uint64_t seed : {9852U, 9866U, 9867U}) {
+    const Recording field =
+        recording_of({"field_from_rest", "field", 3.0, 10, sim::Sensor::vlp16, seed, false});
+    const Outcome outcome = start_at(field, 0, field.scans.size());
+    EXPECT_LT(outcome.squared_error, 6.0 * 4.0) << "seed " << seed;
+    EXPECT_LT(outcome.last_m, 1.0) << "seed " << seed << ", 25 m on";
   }
 }
 
