@@ -11,6 +11,26 @@
 #include <span>
 
 namespace lilo::core {
+namespace {
+
+/// Whether it goes up or down by more than 45 degrees.
+bool rises(const Eigen::Vector3d& direction) {
+  return std::abs(direction.z()) > direction.head<2>().norm();
+}
+
+/// Whether a scan tells far less of a motion, for each metre of it, than of any translation across.
+/// Not if it rises, as in degenerate_direction().
+bool is_degenerate_along(const Vector6d& motion, const Matrix6d& scan_information) {
+  const Eigen::Vector3d along = motion.tail<3>().normalized();
+  if (rises(along)) return false;
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - along * along.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of_translation(
+      across * scan_information.bottomRightCorner<3, 3>() * across, Eigen::EigenvaluesOnly);
+  const double told = motion.dot(scan_information * motion) / motion.tail<3>().squaredNorm();
+  return registration::kDegenerateRatio * told < of_translation.eigenvalues()[1];  // [0] is zero
+}
+
+}  // namespace
 
 WeakDirections weak_directions(const Matrix6d& scan_information, const Matrix6d& motion_information,
                                const Eigen::Quaterniond& R_odom_sensor) {
@@ -48,8 +68,7 @@ std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_informa
       scan_information.bottomRightCorner<3, 3>());
   const Eigen::Vector3d& growing = of_translation.eigenvalues();
   const Eigen::Vector3d least = of_translation.eigenvectors().col(0);
-  const bool rises = std::abs(least.z()) > least.head<2>().norm();
-  const Eigen::Index k = rises ? 1 : 0;
+  const Eigen::Index k = rises(least) ? 1 : 0;
   const bool is_degenerate =
       growing[k + 1] > 0.0 && registration::kDegenerateRatio * growing[k] < growing[k + 1];
   if (!is_degenerate) return std::nullopt;
@@ -57,14 +76,15 @@ std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_informa
 }
 
 DeadReckoning::DeadReckoning(const Matrix6d& scan_information, const Matrix6d& motion_information) {
-  if (!degenerate_direction(scan_information)) return;
   const WeakDirections weak =
       weak_directions(scan_information, motion_information, Eigen::Quaterniond::Identity());
   const auto all = std::span(weak.all).first(static_cast<std::size_t>(weak.count));
   const auto one = std::find_if(all.begin(), all.end(), is_dead_reckoned);
   if (one == all.end()) return;
-  motion_ << one->direction.tail<3>(), one->direction.head<3>();
-  motion_ /= std::sqrt(motion_.dot(motion_information * motion_));
+  Vector6d motion;
+  motion << one->direction.tail<3>(), one->direction.head<3>();
+  if (!is_degenerate_along(motion, scan_information)) return;
+  motion_ = motion / std::sqrt(motion.dot(motion_information * motion));
   dual_ = motion_information * motion_;
 }
 

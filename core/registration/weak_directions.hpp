@@ -47,8 +47,9 @@ bool is_any_dead_reckoned(const WeakDirections& weak);
 /// nothing goes up with the sensor. A unit vector along the odometry's axes, of either sign.
 std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_information);
 
-/// The motion of a pose along its weakest dead reckoned direction, if the scan is degenerate
-/// (degenerate_direction()). In a bend the sensor turns as it moves along.
+/// The motion of a pose along its weakest dead reckoned direction, if the scan tells
+/// registration::kDegenerateRatio times more of any translation across it, and it does not rise. In
+/// a bend the sensor turns as it moves along.
 ///
 /// What a scan seems to tell along it comes from the noise of the cells' normals. Such information
 /// is biased: the points of a cell and its normal have their errors in common, and draw the scan
@@ -57,10 +58,10 @@ std::optional<Eigen::Vector3d> degenerate_direction(const Matrix6d& scan_informa
 /// from 20 to 5 m/s within 14 s, while the vehicle kept 20. So such residuals keep their
 /// information, but draw the pose towards its prediction instead.
 ///
-/// Where a scan is not degenerate, as on bare ground or in dense dust, it has too little of
-/// everything, and nothing is held: what little it tells must correct a wrong velocity. A vehicle
-/// that set off on bare ground was held where it had been, and turned instead. The covariance grows
-/// all the same.
+/// On bare ground and in dense dust the scan tells little across as well. There its residuals stay
+/// as they are, because what little they tell must correct a wrong velocity: a vehicle that set off
+/// on bare ground was held where it had been, and turned instead. The covariance grows all the
+/// same.
 class DeadReckoning {
  public:
   /// None.
