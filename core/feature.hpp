@@ -16,8 +16,9 @@ struct Feature {
   float x_m, y_m, z_m;  ///< sensor frame at the instant of the firing
   float s;              ///< that instant as a part of the scan's duration, in [0, 1]
   /// The gap: vector to the nearer one of the neighbouring rings' returns on the same surface.
-  /// Where neither ring hits it, the vector reaches up to where the next ring looks. The height of
-  /// a bar that one ring hits is unknown, and so is the ground between rings that are far apart.
+  /// Where these are far apart, it goes along the tangent to the parabola through three rings.
+  /// Where neither ring hits the surface, the vector reaches up to where the next ring looks. The
+  /// height of a bar that one ring hits is unknown, and so is rough ground between rings far apart.
   float dx_m, dy_m, dz_m;
   FeatureKind kind;
   std::uint8_t ring;

@@ -15,14 +15,17 @@ inline constexpr float kLevelSlope = 0.3F;
 /// Two returns are on one surface up to this many times the distance at which the rings would meet
 /// a surface of that slope. Range: 1.5 to 6.
 inline constexpr float kSameSurface = 3.0F;
-/// Metres. Between rings that meet the ground nearer together it counts as straight. A map that
-/// took it for straight over more was bent on every fast drive. Range: 8 to 15.
+/// Metres. Between rings that meet the ground nearer together the ground counts as straight. When
+/// it did over more, every fast drive was bent.
 inline constexpr float kStraightGap_m = 10.0F;
-/// Metres. Up to here it counts as the parabola through three rings, if its slope changes by no
-/// more than kMostBend between them; else its height is not known. Range: 20 or more, but with 64
-/// beams that err (--real) drives through a town got worse without a limit; 0.01 to 0.02, but with
-/// 0.02 the error in data/sim_vlp16_park is a fifth larger.
-inline constexpr float kMostRingGap_m = 20.0F, kMostBend = 0.01F;
+/// Metres. Between rings that meet the ground nearer together the ground counts as the parabola
+/// through three rings; beyond, its height is not known. Without a limit, drives of a sensor with
+/// 64 beams that err (velosim --real) got worse.
+inline constexpr float kMostRingGap_m = 20.0F;
+/// Change of the slope (tangent) from one pair of these rings to the next: where it is more, as on
+/// rough ground, the height is not known either. With 0.02 the error in data/sim_vlp16_park was a
+/// fifth larger, with 0.015 more than with 0.01.
+inline constexpr float kMostSlopeChange = 0.01F;
 /// Metres, horizontal: drops, flakes and dust that are farther off mostly give no return. Range: 20
 /// to 30.
 inline constexpr float kDropRange_m = 30.0F;

@@ -208,8 +208,8 @@ void FeatureImage::add_feature(const ColumnView& g, std::size_t ring, std::vecto
 }
 
 /// Of the parabola through three rings, by Newton's divided differences.
-std::optional<float> FeatureImage::bend_to_next_m(const ColumnView& g, std::size_t ring, bool up,
-                                                  float gap2_m2) const {
+std::optional<float> FeatureImage::height_over_tangent_m(const ColumnView& g, std::size_t ring,
+                                                         bool up, float gap2_m2) const {
   if (gap2_m2 < image::kStraightGap_m * image::kStraightGap_m) return 0.0F;
   const std::int32_t both_flat = up ? edges_.flat[ring + 2] & edges_.flat[ring + 3]
                                     : edges_.flat[ring + 1] & edges_.flat[ring];
@@ -219,9 +219,10 @@ std::optional<float> FeatureImage::bend_to_next_m(const ColumnView& g, std::size
   const std::size_t next = up ? ring + 1 : ring - 1, beyond = up ? ring + 2 : ring - 2;
   const float to_next_m = g.horizontal_m[next] - g.horizontal_m[ring];
   const float next_to_beyond_m = g.horizontal_m[beyond] - g.horizontal_m[next];
+  if (!(to_next_m * next_to_beyond_m > 0.0F)) return std::nullopt;  // folded, or a number is none
   const float slope_to_next = (g.z_m[next] - g.z_m[ring]) / to_next_m;
   const float change = (g.z_m[beyond] - g.z_m[next]) / next_to_beyond_m - slope_to_next;
-  if (!(std::abs(change) <= image::kMostBend)) return std::nullopt;
+  if (std::abs(change) > image::kMostSlopeChange) return std::nullopt;
   return change * to_next_m * to_next_m / (to_next_m + next_to_beyond_m);
 }
 
@@ -229,11 +230,11 @@ void FeatureImage::set_sample_gap(const ColumnView& g, float to_lower2, float to
                                   Feature& f) const {
   const std::size_t ring = f.ring;
   const bool up = to_upper2 < to_lower2;
-  if (const auto bend_m = bend_to_next_m(g, ring, up, up ? to_upper2 : to_lower2)) {
+  if (const auto height_m = height_over_tangent_m(g, ring, up, up ? to_upper2 : to_lower2)) {
     const std::size_t next = up ? ring + 1 : ring - 1;
     f.dx_m = g.x_m[next] - f.x_m;
     f.dy_m = g.y_m[next] - f.y_m;
-    f.dz_m = g.z_m[next] - f.z_m - *bend_m;
+    f.dz_m = g.z_m[next] - f.z_m - *height_m;
     return;
   }
   // Across the ray. Without it a thin level object, such as a bridge far ahead or a rail, would

@@ -109,10 +109,11 @@ class FeatureImage {
   [[nodiscard]] bool is_isolated(const Feature& f) const;
   void leave_out_drops();
   void add_feature(const ColumnView& g, std::size_t ring, std::vector<Feature>& out);
-  /// How far the next ring, this far away, is above the tangent to the ground at the ring; none if
-  /// how the ground goes on between them is not known.
-  [[nodiscard]] std::optional<float> bend_to_next_m(const ColumnView& g, std::size_t ring, bool up,
-                                                    float gap2_m2) const;
+  /// How high the next ring above or below is over the tangent to the ground at this one. 0 if they
+  /// are near (kStraightGap_m); none if the height of the ground between them is not known.
+  /// `gap2_m2`: their squared distance.
+  [[nodiscard]] std::optional<float> height_over_tangent_m(const ColumnView& g, std::size_t ring,
+                                                           bool up, float gap2_m2) const;
   void set_sample_gap(const ColumnView& g, float to_lower2, float to_upper2, Feature& f) const;
 
   int most_columns_;

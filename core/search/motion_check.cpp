@@ -31,8 +31,9 @@ void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin,
   structure_.assign(features);
   scans_.add(structure_, T_begin, T_end, timing);
   ++scan_count_;
-  // Two scans with a gap between them lie on each other under other motions as well, by chance.
-  if (structure_.s.size() < tracking::kMinFeatures) {
+  // Scans 1 s apart, with none between them, lie on each other under other motions as well, by
+  // chance.
+  if (!newest_has_structure()) {
     spaced_scans_.clear();
   } else if (newest_is_spaced()) {
     spaced_scans_.add(structure_, T_begin, T_end, timing);
@@ -127,8 +128,11 @@ bool MotionCheck::compare(const Eigen::Vector2d& axis) {
 
 void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis, bool is_dead_reckoned) {
   if (is_dead_reckoned && is_ambiguous()) ++dead_reckoned_scans_;
-  if (!newest_is_spaced() || !spaced_scans_.is_full()) return;
-  ambiguity_ += search::kAmbiguitySmoothing * (depth_of_second_minimum(axis) - ambiguity_);
+  if (!newest_has_structure()) {
+    ambiguity_ -= search::kAmbiguitySmoothing * ambiguity_;
+  } else if (newest_is_spaced() && spaced_scans_.is_full()) {
+    ambiguity_ += search::kAmbiguitySmoothing * (depth_of_second_minimum(axis) - ambiguity_);
+  }
 }
 
 /// Of the cells occupied over the speed along the axis, forwards and backwards from the tracked
@@ -137,7 +141,7 @@ void MotionCheck::observe_ambiguity(const Eigen::Vector2d& axis, bool is_dead_re
 double MotionCheck::depth_of_second_minimum(const Eigen::Vector2d& axis) {
   const double tracked =
       spaced_scans_.occupied_under(Eigen::Vector2d::Zero(), Subsample::all, grid_);
-  // Where scans hardly share cells, or there are none, the number varies by chance.
+  // Where scans hardly share cells the number varies by chance.
   const double alone = spaced_scans_.occupied_alone(grid_);
   if (alone - tracked <= search::kLeastShared * alone) return 0.0;
   double deepest = -std::numeric_limits<double>::max();

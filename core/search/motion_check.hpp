@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/constants.hpp"
 #include "core/search/tracked_scans.hpp"
 
 #include <cstddef>
@@ -43,11 +44,10 @@ class MotionCheck {
   /// another one was significantly better both now and the last time, and scans share enough cells
   /// under it (kLeastShared). `axis`: horizontal unit vector along or across the surroundings.
   bool compare(const Eigen::Vector2d& axis);
-  /// To be called once after each compare(). Looks for a second minimum over 15 scans
-  /// (kAmbiguityStride); none where they share too few cells. `is_dead_reckoned`: along a
-  /// direction, during the newest scan. A scan without structure (kMinFeatures), as on bare ground,
-  /// tells no motion, and those before it are forgotten. Until there are 15 again, what was found
-  /// last stays.
+  /// To be called once after each compare(). Looks for a second minimum over 16 scans
+  /// (kAmbiguityStride); none where they share too few cells. A scan with less structure than
+  /// tracking::kMinFeatures, as on bare ground, has none, and scans before it are not compared with
+  /// those after it. `is_dead_reckoned`: along a direction, during the newest scan.
   void observe_ambiguity(const Eigen::Vector2d& axis, bool is_dead_reckoned);
   /// Whether there has been one for some time.
   [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }
@@ -60,6 +60,9 @@ class MotionCheck {
   void count_ambiguous_scans();
   [[nodiscard]] bool newest_is_spaced() const {
     return (scan_count_ - 1) % search::kAmbiguityStride == 0;
+  }
+  [[nodiscard]] bool newest_has_structure() const {
+    return structure_.s.size() >= tracking::kMinFeatures;
   }
   int least_occupied(const Eigen::Vector2d& axis, Subsample subsample, int limit);
   void suspect_speed(const Eigen::Vector2d& axis, int of_quarter);

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <set>
 #include <span>
@@ -101,97 +102,6 @@ TEST(FeatureImage, FindsTheNextRingInTheColumnBeside) {
     EXPECT_GT(all, 5 * columns) << columns;  // of seven rings
     EXPECT_LE(wrong, 7) << columns << ": more than a column of " << all;
   }
-}
-
-/// A plain so far below the sensor: where ring k meets it, and the features there.
-struct Plain {
-  explicit Plain(double down_m) : below_m(down_m) {
-    test::Scene plain;
-    plain.planes = {{{0.0, 0.0, 1.0}, -down_m}};
-    core::FeatureImage image(1024, {});
-    features = image.build(test::still_scan_of(plain, k16, {}));
-  }
-  [[nodiscard]] double away_m(int ring) const {
-    return -below_m /
-           std::tan(static_cast<double>(k16.elevation_rad[static_cast<std::size_t>(ring)]));
-  }
-  double below_m;
-  std::vector<Feature> features;
-};
-
-// The next ring is the one below; of the lowest the one above.
-TEST(FeatureImage, TheGroundGoesOnToTheNearestRing) {
-  const Plain plain(1.5);
-  std::array<int, 8> count{};
-  for (const Feature& f : plain.features) {
-    if (f.ring == 7) continue;  // meets the ground 86 m off, three times as far as the next
-    ASSERT_LT(f.ring, 7);
-    ++count[f.ring];
-    const Eigen::Vector2d away_m = key_of(f).head<2>();
-    const int nearest = f.ring == 0 ? 1 : f.ring - 1;
-    EXPECT_NEAR(away_m.normalized().dot(reach_of(f).head<2>()),
-                plain.away_m(nearest) - plain.away_m(f.ring), 0.05)
-        << int{f.ring};
-    EXPECT_NEAR(f.dz_m, 0.0, 1e-3) << int{f.ring};
-  }
-  for (int ring = 0; ring < 7; ++ring) EXPECT_EQ(count[static_cast<std::size_t>(ring)], 1024);
-}
-
-// From 3 m above the ground, rings 5 and 6 meet it 23 m apart.
-TEST(FeatureImage, HowTheGroundGoesOnIsNotKnownBeyondTwentyMetres) {
-  const Plain plain(3.0);
-  int far = 0;
-  for (const Feature& f : plain.features) {
-    if (f.ring != 6) continue;
-    EXPECT_NEAR(f.dz_m, plain.away_m(6) * 2.0 * std::numbers::pi / 180.0, 2e-3);
-    ++far;
-  }
-  EXPECT_EQ(far, 1024);
-}
-
-double slope_of(int ring) {
-  return std::tan(static_cast<double>(k16.elevation_rad[static_cast<std::size_t>(ring)]));
-}
-
-/// Of ring 6, if it and the rings below see something at these distances, its own first.
-Feature last_ring(const std::vector<double>& away_m) {
-  Scan scan;
-  scan.beams = k16;
-  scan.end_ns = 100'000'000;
-  for (std::size_t k = 0; k < away_m.size(); ++k) {
-    scan.returns.push_back(return_at(k16, static_cast<std::uint8_t>(6 - k), 0.001, away_m[k]));
-  }
-  core::FeatureImage image(1024, {});
-  for (const Feature& f : image.build(scan)) {
-    if (f.ring == 6) return f;
-  }
-  return {};
-}
-
-// Ground of height b d^2 - 1.5 m at a distance d.
-TEST(FeatureImage, BetweenFarRingsTheGroundIsAParabola) {
-  for (const double b : {-3e-4, -1e-4, 0.0, 1e-4}) {
-    std::vector<double> away_m;
-    for (const int ring : {6, 5, 4}) {
-      const double falls = -slope_of(ring);
-      away_m.push_back(3.0 / (falls + std::sqrt(falls * falls + 6.0 * b)));
-    }
-    const Feature f = last_ring(away_m);
-    ASSERT_GT(away_m[0] - away_m[1], 10.0) << b;
-    const double slope = 2.0 * b * away_m[0];
-    EXPECT_NEAR(f.dz_m, slope * (away_m[1] - away_m[0]), 1e-3) << b;
-  }
-}
-
-TEST(FeatureImage, HowRoughGroundGoesOnBetweenFarRingsIsNotKnown) {
-  const double last_m = -1.5 / slope_of(6), next_m = -1.5 / slope_of(5);
-  const auto is_known = [&](double beyond_z_m) {
-    return last_ring({last_m, next_m, beyond_z_m / slope_of(4)}).dz_m < 0.5F;
-  };
-  EXPECT_TRUE(is_known(-1.5));
-  EXPECT_TRUE(is_known(-1.46)) << "the slope changes by 0.008";
-  EXPECT_FALSE(is_known(-1.42)) << "by 0.014";
-  EXPECT_GT(last_ring({last_m, next_m}).dz_m, 0.5F) << "two rings";
 }
 
 // Floor and a wall, where one ring meets the floor just before the wall and the next one the wall
