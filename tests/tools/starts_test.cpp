@@ -126,8 +126,11 @@ TEST(HillStarts, AMapBegunUnderAFalseMotionIsBegunAgain) {
 // was.
 TEST(FieldStarts, AVehicleThatSetsOffOnBareGroundIsFollowed) {
   for (const std::uint64_t seed : {9852U, 9866U, 9867U}) {
-    const Recording field =
-        recording_of({"field_from_rest", "field", 3.0, 10, sim::Sensor::vlp16, seed, false});
+    const Recording field = recording_of({.name = "field_from_rest",
+                                          .world = "field",
+                                          .speed_mps = 3.0,
+                                          .seed = seed,
+                                          .start_in_motion = false});
     const Outcome outcome = start_at(field, 0, field.scans.size());
     EXPECT_LT(outcome.squared_error, 6.0 * 4.0) << "seed " << seed;
     EXPECT_LT(outcome.last_m, 1.0) << "seed " << seed << ", 25 m on";
