@@ -29,14 +29,14 @@ void MotionCheck::clear() {
 void MotionCheck::add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
                       const ScanTiming& timing) {
   structure_.assign(features);
-  scans_.add(structure_, T_begin, T_end, timing);
   ++scan_count_;
-  // Scans 1 s apart, with none between them, lie on each other under other motions as well, by
-  // chance.
-  if (!newest_has_structure()) {
+  if (newest_has_structure()) {
+    scans_.add(structure_, T_begin, T_end, timing);
+    if (newest_is_spaced()) spaced_scans_.add(structure_, T_begin, T_end, timing);
+  } else {
+    scans_.clear();
     spaced_scans_.clear();
-  } else if (newest_is_spaced()) {
-    spaced_scans_.add(structure_, T_begin, T_end, timing);
+    times_refuted_ = 0;
   }
   count_ambiguous_scans();
 }
