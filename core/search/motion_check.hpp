@@ -38,9 +38,9 @@ class MotionCheck {
   /// Forgets all scans. An ambiguity ends with it (ambiguity_ended()).
   void clear();
   /// The next scan as it was tracked. If its returns were compensated, both poses are the last one.
-  /// One with less structure than tracking::kMinFeatures, as on bare ground, is left out, and those
-  /// before it are forgotten. Without it, scans before and after it would lie on each other under
-  /// other motions by chance, and nothing keeps them where they are while it is the newest.
+  /// A scan with less structure than tracking::kMinFeatures, as on bare ground, is left out, and
+  /// those before it are forgotten: with a gap between them scans lie on each other under other
+  /// motions by chance.
   void add(const std::vector<Feature>& features, const Pose& T_begin, const Pose& T_end,
            const ScanTiming& timing);
   /// To be called once after each add(). Compares the tracked motion with others. Returns whether
@@ -48,8 +48,8 @@ class MotionCheck {
   /// under it (kLeastShared). `axis`: horizontal unit vector along or across the surroundings.
   bool compare(const Eigen::Vector2d& axis);
   /// To be called once after each compare(). Looks for a second minimum over 16 scans
-  /// (kAmbiguityStride); none where they share too few cells. A scan without
-  /// structure has none. `is_dead_reckoned`: along a direction, during the newest scan.
+  /// (kAmbiguityStride); none where they share too few cells, or without structure.
+  /// `is_dead_reckoned`: along a direction, during the newest scan.
   void observe_ambiguity(const Eigen::Vector2d& axis, bool is_dead_reckoned);
   /// Whether there has been one for some time.
   [[nodiscard]] bool is_ambiguous() const { return ambiguity_ > search::kAmbiguousSigmas; }
