@@ -176,8 +176,8 @@ inline constexpr double kWeakShare = 0.5;
 /// 0.25, by NEES and by the drift in tunnels.
 inline constexpr double kDeadReckonedShare = 0.15;
 /// Ratio of the second smallest to the smallest eigenvalue of the translation's information, from
-/// which a scan is degenerate, and a motion is held (DeadReckoning). In tunnels mostly 600 or more,
-/// elsewhere below 100. With 200 more poses are wrong and `tracking`; with 50 fewer `tracking`.
+/// which a scan is degenerate and a motion is held. It is mostly 600 or more in tunnels, less than
+/// 100 elsewhere. With 200 more poses are wrong and `tracking`; with 50 fewer are `tracking`.
 inline constexpr double kDegenerateRatio = 100.0;
 /// Metres of a unit vector (m, rad): a weak direction that moves less mostly turns.
 inline constexpr double kMostlyTurns_m = 0.3;

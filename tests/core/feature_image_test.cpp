@@ -24,16 +24,13 @@ namespace lilo {
 namespace {
 
 using test::azimuth_of;
+using test::gap_of;
 using test::return_at;
 
 const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
 
 Eigen::Vector3d key_of(const Feature& f) {
   return Eigen::Vector3f(f.x_m, f.y_m, f.z_m).cast<double>();
-}
-
-Eigen::Vector3d reach_of(const Feature& f) {
-  return Eigen::Vector3f(f.dx_m, f.dy_m, f.dz_m).cast<double>();
 }
 
 TEST(FeatureImage, TellsGroundFromWalls) {
@@ -65,7 +62,7 @@ TEST(FeatureImage, WhatOneRingHitsMayBeAsHighAsTheNextOneLooks) {
     scan.returns.push_back(return_at(k16, 9, azimuth, 30.0 / std::cos(azimuth)));
   }
   for (const Feature& f : image.build(scan)) {
-    const Eigen::Vector3d p = key_of(f), up = reach_of(f);
+    const Eigen::Vector3d p = key_of(f), up = gap_of(f);
     EXPECT_NEAR(up.norm(), p.norm() * gap_rad, 1e-3);
     EXPECT_NEAR(up.normalized().dot(p.normalized()), 0.0, 1e-5);
     EXPECT_GT(up.z(), 0.0);
@@ -113,7 +110,7 @@ TEST(FeatureImage, MakesNoRampOfFloorAndWall) {
   int ground = 0;
   for (const Feature& f : image.build(test::still_scan_of(hall, k16, {}))) {
     if (f.kind != FeatureKind::ground || is_overhead(f)) continue;
-    const Eigen::Vector3d p = key_of(f), reach = reach_of(f);
+    const Eigen::Vector3d p = key_of(f), reach = gap_of(f);
     EXPECT_NEAR(p.z(), -0.8, 1e-3) << int{f.ring};
     const bool along_floor = std::abs(reach.z()) < 1e-3;
     const bool nobody_knows = std::abs(reach.normalized().dot(p.normalized())) < 1e-3;

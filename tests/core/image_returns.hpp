@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/feature.hpp"
 #include "core/scan.hpp"
+
+#include <Eigen/Core>
 
 #include <cmath>
 #include <cstdint>
@@ -23,6 +26,11 @@ inline Return return_at(const BeamTable& beams, std::uint8_t ring, double azimut
           .z_m = static_cast<float>(flat_m * up),
           .azimuth_rad = static_cast<float>(azimuth_rad),
           .ring = ring};
+}
+
+/// From a feature to the next sample of its surface.
+inline Eigen::Vector3d gap_of(const Feature& f) {
+  return Eigen::Vector3f(f.dx_m, f.dy_m, f.dz_m).cast<double>();
 }
 
 }  // namespace lilo::test

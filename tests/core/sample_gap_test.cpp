@@ -16,12 +16,14 @@
 namespace lilo {
 namespace {
 
+using test::gap_of;
 using test::return_at;
 
 const BeamTable k16 = test::even_beams(16, -15.0, 15.0);
 
-Eigen::Vector3d gap_of(const Feature& f) {
-  return Eigen::Vector3f(f.dx_m, f.dy_m, f.dz_m).cast<double>();
+/// By how many metres a beam falls in each metre of the way.
+double falls(const BeamTable& beams, int ring) {
+  return -std::tan(static_cast<double>(beams.elevation_rad[static_cast<std::size_t>(ring)]));
 }
 
 /// A plain so far below the sensor: where ring k meets it, and the features there.
@@ -32,10 +34,7 @@ struct Plain {
     core::FeatureImage image(1024, {});
     features = image.build(test::still_scan_of(plain, k16, {}));
   }
-  [[nodiscard]] double away_m(int ring) const {
-    return -below_m /
-           std::tan(static_cast<double>(k16.elevation_rad[static_cast<std::size_t>(ring)]));
-  }
+  [[nodiscard]] double away_m(int ring) const { return below_m / falls(k16, ring); }
   double below_m;
   std::vector<Feature> features;
 };
@@ -70,17 +69,13 @@ TEST(SampleGap, HowTheGroundGoesOnIsNotKnownBeyondTwentyMetres) {
   EXPECT_EQ(far, 1024);
 }
 
-double falls(const BeamTable& beams, int ring) {
-  return -std::tan(static_cast<double>(beams.elevation_rad[static_cast<std::size_t>(ring)]));
-}
-
 struct Seen {
   int ring;
   double away_m;
 };
 
 /// The gap of the first of these rings.
-std::optional<Eigen::Vector3d> gap_of(const BeamTable& beams, const std::vector<Seen>& seen) {
+std::optional<Eigen::Vector3d> gap_of_first(const BeamTable& beams, const std::vector<Seen>& seen) {
   Scan scan;
   scan.beams = beams;
   scan.end_ns = 100'000'000;
@@ -103,7 +98,7 @@ void expect_tangent(const BeamTable& beams, const std::array<int, 3>& rings, dou
   }
   const double gap_m = seen[1].away_m - seen[0].away_m;
   ASSERT_GT(std::abs(gap_m), 10.0) << b;
-  const auto gap = gap_of(beams, seen);
+  const auto gap = gap_of_first(beams, seen);
   ASSERT_TRUE(gap) << b;
   EXPECT_NEAR(gap->x(), gap_m, 1e-3) << b;
   EXPECT_NEAR(gap->z(), 2.0 * b * seen[0].away_m * gap_m, 1e-3) << b;
@@ -120,7 +115,7 @@ TEST(SampleGap, BetweenFarRingsTheGroundIsAParabola) {
 TEST(SampleGap, HowRoughGroundGoesOnBetweenFarRingsIsNotKnown) {
   const std::vector<Seen> two{{6, 1.5 / falls(k16, 6)}, {5, 1.5 / falls(k16, 5)}};
   const auto is_known = [](const std::vector<Seen>& seen) {
-    const auto gap = gap_of(k16, seen);
+    const auto gap = gap_of_first(k16, seen);
     EXPECT_TRUE(gap);
     return gap && std::abs(gap->z()) < 0.5;
   };
