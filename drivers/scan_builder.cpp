@@ -47,7 +47,9 @@ struct ScanBuilder::Impl {
         file(configured_calibration(config)),
         decoder(config, azimuths),
         hdl64e(config, file_of(64), decoder),
-        assembler(config, target, sink) {}
+        assembler(config, target, sink) {
+    use_file();  // the decoder begins with the table of a VLP-16, whose packets do not change it
+  }
 
   // The configured calibration, if it is of so many lasers.
   [[nodiscard]] const Calibration* file_of(int lasers) const {
@@ -62,6 +64,7 @@ struct ScanBuilder::Impl {
                                           std::int64_t received_ns) const;
   void refuse(const SensorIdentity& identity);
   void follow(const SensorTable& table);
+  void use_file();
   bool feed_vlp(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
   bool feed_hdl64e(DataPacket data, std::uint32_t stamp_us, std::int64_t received_ns);
   std::optional<std::uint32_t> place(std::uint32_t stamp_us, std::int64_t line_ns,
@@ -206,9 +209,14 @@ void ScanBuilder::Impl::follow(const SensorTable& table) {
   decoder.use(table);
   if (table.model == SensorModel::hdl64e) {
     hdl64e.take_over();
-  } else if (const Calibration* own = file_of(table.lasers)) {
-    decoder.use_calibration(*own);
+  } else {
+    use_file();
   }
+}
+
+void ScanBuilder::Impl::use_file() {
+  const Calibration* own = file_of(decoder.table().lasers);
+  if (own != nullptr) decoder.use_calibration(*own);
 }
 
 bool ScanBuilder::Impl::feed_vlp(DataPacket data, std::uint32_t stamp_us,

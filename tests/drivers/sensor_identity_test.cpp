@@ -138,6 +138,22 @@ TEST(SensorIdentity, AnotherModelMayReplaceOneThatIsSilent) {
   EXPECT_EQ(out.scans.back().beams.ring_count, 128);
 }
 
+// The decoder's first table is that of a VLP-16, so that no packet makes it change to it.
+TEST(SensorCalibration, AFileOverridesAVlp16sOwn) {
+  Calibration calibration = built_in_calibration(*find_sensor(SensorModel::vlp16));
+  for (LaserCorrection& laser : calibration.lasers) laser.vert_rad += 0.01;
+  SensorConfig config;
+  config.calibration_file = testing::TempDir() + "/override_16.yaml";
+  ASSERT_TRUE(store_calibration(config.calibration_file, calibration));
+  const auto packets = packets_of(SensorModel::vlp16, 400);
+  const Outcome own = test::build(packets), file = test::build(packets, config);
+  ASSERT_FALSE(file.scans.empty());
+  EXPECT_EQ(file.status.calibration, CalibrationOrigin::file);
+  for (std::size_t ring = 0; ring < 16; ++ring)
+    EXPECT_NEAR(file.scans[0].beams.elevation_rad[ring] - own.scans[0].beams.elevation_rad[ring],
+                0.01F, 1e-6F);
+}
+
 TEST(SensorCalibration, AFileOverridesTheModelsOwn) {
   const SensorTable& table = *find_sensor(SensorModel::vlp32c);
   Calibration calibration = built_in_calibration(table);
