@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/feature_extractor.hpp"
 
+#include "core/constants.hpp"
 #include "core/image/feature_image.hpp"
+#include "core/image/levelling.hpp"
 
+#include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace lilo {
 namespace {
@@ -17,13 +21,28 @@ constexpr std::size_t kUnsettledReturns = std::size_t{5} * 384;
 struct FeatureExtractor::Impl {
   bool idle;  // the profile has no use for features
   core::FeatureImage image;
-  std::size_t taken = 0;     // returns of the scan being followed
+  core::Levelling levelling{};
+  std::optional<Eigen::Quaterniond> R_level_sensor{};  // none until a scan tells it
+  std::size_t taken = 0;                               // returns of the scan being followed
   bool invalidated = false;  // returns came in before some that were taken
 
+  [[nodiscard]] Eigen::Quaterniond axes() const {
+    return R_level_sensor.value_or(Eigen::Quaterniond::Identity());
+  }
+  /// Returns whether the axes are others now, so that features must be found again.
+  bool level(const std::vector<Feature>& in_sensor_axes) {
+    R_level_sensor = levelling.R_level_sensor(in_sensor_axes);
+    return R_level_sensor->w() != 1.0;
+  }
   void take(const Scan& scan, std::size_t end) {
-    if (taken == 0) image.begin(scan.beams);
+    if (taken == 0) image.begin(scan.beams, axes());
     image.add(std::span(scan.returns).subspan(taken, end - taken));
     taken = end;
+  }
+  std::vector<Feature>& finish(const Scan& scan) {
+    if (invalidated) taken = 0;
+    take(scan, scan.returns.size());
+    return image.finish(scan);
   }
 };
 
@@ -48,9 +67,17 @@ void FeatureExtractor::inserted(std::size_t index) {
 
 void FeatureExtractor::finish(const Scan& scan, ScanFeatures& out) {
   if (impl_->idle) return;
-  if (impl_->invalidated) impl_->taken = 0;
-  impl_->take(scan, scan.returns.size());
-  std::swap(impl_->image.finish(scan), out.all);
+  std::vector<Feature>* found = &impl_->finish(scan);
+  if (!impl_->R_level_sensor) {
+    if (found->size() < core::tracking::kMinFeatures) {
+      found->clear();
+    } else if (impl_->level(*found)) {
+      impl_->taken = 0;
+      found = &impl_->finish(scan);
+    }
+  }
+  std::swap(*found, out.all);
+  out.R_level_sensor = impl_->axes();
   give_up();
 }
 

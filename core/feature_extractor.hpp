@@ -13,7 +13,12 @@ namespace lilo {
 /// Finds the features of a scan while the scan is still being measured, so that only registration
 /// is left to do after its last firing. The features are the same bits whether and how often
 /// follow() was called.
-/// Not thread-safe; the one thread need not be the one that calls Odometry.
+///
+/// The first scan with at least tracking::kMinFeatures features tells whether the sensor is tilted
+/// (core::Levelling), and is taken once more if it is. All scans from it on are in the level axes
+/// found, as long as the extractor lives, also if that scan did not show the ground. (A version
+/// that asked later scans too got worse in rooms.) Earlier ones are given no features: they have
+/// too few to be aligned. Not thread-safe; the one thread need not be the one that calls Odometry.
 class FeatureExtractor {
  public:
   explicit FeatureExtractor(const OdometryConfig& config);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/odometry.hpp"
 
+#include "core/level_frame.hpp"
 #ifdef LILO_PAPER
 #include "core/paper/paper_odometry.hpp"
 #endif
@@ -21,6 +22,10 @@ struct Odometry::Impl {
   AnyProfile profile;
   FeatureExtractor extractor;
   ScanFeatures features;
+  Eigen::Quaterniond R_level_sensor = Eigen::Quaterniond::Identity();  // of the last scan
+
+  /// Of a level sensor nothing is turned: its poses keep their bits.
+  [[nodiscard]] bool is_levelled() const { return R_level_sensor.w() != 1.0; }
 };
 
 namespace {
@@ -58,8 +63,10 @@ Estimate Odometry::process(const Scan& scan, StageHook hook) {
 }
 
 Estimate Odometry::align(const Scan& scan, ScanFeatures& features, StageHook hook) {
-  return std::visit([&](auto& profile) { return profile.align(scan, features.all, hook); },
-                    impl_->profile);
+  impl_->R_level_sensor = features.R_level_sensor;
+  const Estimate estimate = std::visit(
+      [&](auto& profile) { return profile.align(scan, features.all, hook); }, impl_->profile);
+  return impl_->is_levelled() ? in_sensor_axes(estimate, impl_->R_level_sensor) : estimate;
 }
 
 void Odometry::update_map(const ScanFeatures& features, StageHook hook) {
@@ -76,20 +83,31 @@ BeamEstimate Odometry::beam_estimate() const {
   return tracker != nullptr ? tracker->beam_estimate() : BeamEstimate{};
 }
 
+double Odometry::tilt_rad() const {
+  return impl_->R_level_sensor.angularDistance(Eigen::Quaterniond::Identity());
+}
+
 std::vector<Eigen::Vector3f> Odometry::map_points() const {
-  return std::visit([](const auto& profile) { return profile.map_points(); }, impl_->profile);
+  std::vector<Eigen::Vector3f> points_m =
+      std::visit([](const auto& profile) { return profile.map_points(); }, impl_->profile);
+  if (impl_->is_levelled()) turn_to_sensor_axes(impl_->R_level_sensor, points_m);
+  return points_m;
 }
 
 void Odometry::aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const {
   out.clear();
   const auto* tracker = std::get_if<core::Tracker>(&impl_->profile);
-  if (tracker != nullptr) tracker->aligned_points(most, out);
+  if (tracker == nullptr) return;
+  tracker->aligned_points(most, out);
+  if (impl_->is_levelled()) turn_to_sensor_axes(impl_->R_level_sensor, out);
 }
 
 void Odometry::mapped_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const {
   out.clear();
   const auto* tracker = std::get_if<core::Tracker>(&impl_->profile);
-  if (tracker != nullptr) tracker->mapped_points(most, out);
+  if (tracker == nullptr) return;
+  tracker->mapped_points(most, out);
+  if (impl_->is_levelled()) turn_to_sensor_axes(impl_->R_level_sensor, out);
 }
 
 }  // namespace lilo

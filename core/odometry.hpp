@@ -33,8 +33,9 @@ class Odometry {
   Estimate process(const Scan& scan, StageHook hook = {});
 
   /// The same in parts, so that the pose comes early: align() and then update_map(), both with the
-  /// features that FeatureExtractor found in the scan. align() corrects them in place by the
-  /// estimated errors of the sensor's beams. Profile paper does all of it in align().
+  /// features that FeatureExtractor found in the scan. All of them must come from one extractor, so
+  /// that their axes stay the same (ScanFeatures::R_level_sensor). align() corrects them in place
+  /// by the estimated errors of the sensor's beams. Profile paper does all of it in align().
   Estimate align(const Scan& scan, ScanFeatures& features, StageHook hook = {});
   /// Adds the scan just aligned to the map. To be called once after each align().
   void update_map(const ScanFeatures& features, StageHook hook = {});
@@ -46,6 +47,10 @@ class Odometry {
   /// What has been found of the beams so far; nothing (no rings) without calibrate_beams and by
   /// profile paper.
   [[nodiscard]] BeamEstimate beam_estimate() const;
+
+  /// Angle (rad) by which the last scan was levelled (ScanFeatures::R_level_sensor). 0: it was not
+  /// (core::Levelling says when), there was none yet, or the profile is paper.
+  [[nodiscard]] double tilt_rad() const;
 
   /// The local map in the odometry frame (m), in no particular order: profile default, the mean of
   /// every fine cell; paper, both map clouds. Allocates: for saving, not for every scan.

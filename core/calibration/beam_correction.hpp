@@ -19,6 +19,11 @@ namespace lilo::core {
 /// Corrections to be added to elevations and azimuths. An encoder whose disc is mounted off the
 /// axis reports azimuths with an error of one period a revolution. Its correction is cosine *
 /// cos(azimuth) + sine * sin(azimuth), with azimuths counter-clockwise from +x.
+///
+/// Features are in level axes (ScanFeatures::R_level_sensor). So azimuths of a tilted sensor are
+/// corrected about the vertical, and elevations towards it, instead of its own axis. With its own
+/// axis, the mean t of 16 drives with wrong beams and tilts of 10 to 20 degrees was 0.98 +- 0.03
+/// times as large.
 struct BeamCorrection {
   std::array<double, kMaxRings> elevation_rad{};               ///< by ring
   Eigen::Vector2d eccentricity_rad = Eigen::Vector2d::Zero();  ///< cosine and sine
@@ -34,11 +39,12 @@ struct BeamCorrection {
 /// proportion to r^2: a paraboloid. Ground alone does not show this, because on a path that bends
 /// up or down all scans agree.
 inline double common_part_of(double elevation_rad) {
-  if (elevation_rad >= 0.0) return 0.0;  // it sees no ground
+  if (elevation_rad >= 0.0)
+    return 0.0;  // a level sensor sees no ground with it; what a tilted one sees stays
   return calibration::kCommonAt_rad / std::max(-elevation_rad, calibration::kNearHorizon_rad);
 }
 
-/// How a point moves, in the sensor's frame, per radian of its beam's elevation.
+/// How a point moves, in the axes of the features, per radian of its beam's elevation.
 inline Eigen::Vector3f moved_by_elevation(const Feature& f) {
   const float horizontal_m = std::sqrt(f.x_m * f.x_m + f.y_m * f.y_m);
   const float slope = horizontal_m > 0.0F ? -f.z_m / horizontal_m : 0.0F;

@@ -9,7 +9,9 @@
 
 namespace lilo {
 
-/// What is known of the errors of a sensor's beams: to be kept from one run to the next.
+/// What is known of the errors of a sensor's beams: to be kept from one run to the next. Of a
+/// levelled sensor azimuths are about the vertical and elevations are towards it
+/// (core::BeamCorrection), so that the estimate holds for that tilt.
 /// Trivially copyable, so that threads can share it.
 struct BeamEstimate {
   int ring_count = 0;                             ///< 0: nothing is known
@@ -18,7 +20,7 @@ struct BeamEstimate {
   /// To be added to an azimuth: [0] * cos(azimuth) + [1] * sin(azimuth).
   std::array<double, 2> eccentricity_rad{};
   double eccentricity_sigma_rad = 0.0;
-  /// Of a ring 5 degrees below the horizon. To be added to each ring that saw the ground, in
+  /// Of a ring at -5 degrees. To be added to each ring that saw the ground, in
   /// inverse proportion to its elevation.
   double common_elevation_rad = 0.0;
   double common_elevation_sigma_rad = 0.0;

@@ -46,6 +46,23 @@ inline constexpr float kMostIsolatedPart = 0.2F;
 /// Radians. Azimuths nearer to the newest return, or to the first one of the scan, may still get
 /// returns: the lasers of one firing of an HDL-64E look up to 18 degrees apart. Range: 0.17 to 0.7.
 inline constexpr float kFiringSpread_rad = 0.35F;
+/// Metres, horizontal: flat surfaces so near tell how the sensor is tilted.
+inline constexpr float kNearGround_m = 15.0F;
+/// A point is in a plane if it is off it by less than this part of its range. With 0.2 m, near
+/// floors seen in a strip of 1 m gave planes 9 degrees off.
+inline constexpr double kInGround = 0.02;
+/// Thickness of ground over its width (1 sigma each) at most. Above it the points are a strip,
+/// which may be tilted in any way about its length.
+inline constexpr double kMostThickness = 0.08;
+/// Square metres: a smaller triangle tells no plane.
+inline constexpr double kLeastTriangle_m2 = 1.0;
+/// Random planes that are tried: of three points each eighth is in the ground if half of all are.
+inline constexpr int kPlaneTrials = 300;
+/// Fits of the best one to the points that are in it.
+inline constexpr int kPlaneFits = 5;
+/// Radians. A sensor is levelled if it is tilted by more than the first and less than the second.
+/// Stairs have 30 degrees and more.
+inline constexpr double kLeastTilt_rad = 0.05, kMostTilt_rad = 0.5;
 /// Pixels of an image at most, and so features. Range, with 64 rings: 512 to 1024 columns.
 inline constexpr int kMostPixels = 64 * 576;
 /// Metres: voxels of ground and of structure in the first scan, before they adapt.

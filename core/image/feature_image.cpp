@@ -41,8 +41,9 @@ std::vector<Feature>& FeatureImage::build(const Scan& scan) {
   return finish(scan);
 }
 
-void FeatureImage::begin(const BeamTable& beams) {
+void FeatureImage::begin(const BeamTable& beams, const Eigen::Quaterniond& R_level_sensor) {
   beams_ = beams;
+  R_level_sensor_ = R_level_sensor.toRotationMatrix().cast<float>();
   columns_ = columns_for(beams.ring_count, most_columns_);
   margin_ = static_cast<int>(std::ceil(image::kFiringSpread_rad * columns_per_rad(columns_)));
   beside_ = static_cast<int>(std::ceil(image::kNeighbours_rad * columns_per_rad(columns_)));
@@ -237,7 +238,9 @@ void FeatureImage::set_sample_gap(const ColumnView& g, float to_lower2, float to
     f.dz_m = g.z_m[next] - f.z_m - *height_m;
     return;
   }
-  // Across the ray. Without it a thin level object, such as a bridge far ahead or a rail, would
+  // Across the ray and upright. (The next ring of a tilted sensor is along the sensor's axis
+  // instead. With that, the mean t of 74 drives tilted by 10 to 20 degrees was 1.04 +- 0.04 times
+  // as large.) Without the gap a thin level object, such as a bridge far ahead or a rail, would
   // hold the ring at the height at which it was seen first, and with it the pitch.
   const float horizontal_m = std::max(1e-3F, g.horizontal_m[ring]);
   const float gap = gap_rad_[ring];

@@ -4,6 +4,9 @@
 #include "core/feature.hpp"
 #include "core/scan.hpp"
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -43,14 +46,17 @@ class FeatureImage {
   /// image::kMostPixels.
   static int columns_for(int rings, int most);
 
-  void begin(const BeamTable& beams);
+  /// `R_level_sensor`: to the axes in which returns are classified and features are told
+  /// (Levelling). Columns are those of the sensor's azimuth.
+  void begin(const BeamTable& beams,
+             const Eigen::Quaterniond& R_level_sensor = Eigen::Quaterniond::Identity());
   /// The next returns of the scan, in its order.
   void add(std::span<const Return> returns);
   /// The features, ordered column by column from straight behind, clockwise. `scan` gives the
   /// times; all of its returns must have been added. Lives until the next begin().
   std::vector<Feature>& finish(const Scan& scan);
 
-  /// A whole scan at once.
+  /// A whole scan at once, in the sensor's axes.
   std::vector<Feature>& build(const Scan& scan);
 
  private:
@@ -65,7 +71,7 @@ class FeatureImage {
   /// not.
   struct ColumnView {
     std::array<float, kMaxRings> x_m, y_m, z_m;
-    std::array<float, kMaxRings> horizontal_m;  ///< from the sensor's axis; 0: empty
+    std::array<float, kMaxRings> horizontal_m;  ///< from the vertical through the sensor; 0: empty
     std::array<std::int32_t, kMaxRings> t_ns;
     Filled own;
     int column;
@@ -122,6 +128,7 @@ class FeatureImage {
   int beside_ = 1;   // columns to either side in which a return's neighbours are
   float nearest2_, farthest2_;
   BeamTable beams_;
+  Eigen::Matrix3f R_level_sensor_;
   std::vector<Pixel> pixels_;   // valid where filled
   std::vector<Filled> filled_;  // of every column; apart, because most returns only read this
   std::array<float, kMaxRings> gap_rad_{};  // to the next ring; of the highest, to the one below

@@ -13,6 +13,7 @@ struct FeatureImage::Projector {
   Filled* filled;
   std::uint32_t rows, columns;
   float per_rad, nearest2, farthest2;
+  Eigen::Matrix3f R_level_sensor;
 
   /// Columns begin straight behind and go clockwise.
   [[nodiscard]] std::uint32_t column_of(const Return& r) const {
@@ -35,7 +36,8 @@ struct FeatureImage::Projector {
     const float range2 = r.x_m * r.x_m + r.y_m * r.y_m + r.z_m * r.z_m;
     if (!(range2 >= nearest2 && range2 <= farthest2)) return false;  // and NaN
     word |= bit;
-    pixels[column * rows + ring] = {r.x_m, r.y_m, r.z_m, r.t_ns};
+    const Eigen::Vector3f p = R_level_sensor * Eigen::Vector3f(r.x_m, r.y_m, r.z_m);
+    pixels[column * rows + ring] = {p.x(), p.y(), p.z(), r.t_ns};
     return true;
   }
 };
@@ -47,7 +49,8 @@ void FeatureImage::project(std::span<const Return> returns) {
                             static_cast<std::uint32_t>(columns_),
                             columns_per_rad(columns_),
                             nearest2_,
-                            farthest2_};
+                            farthest2_,
+                            R_level_sensor_};
   if (columns_ < most_columns_) {
     project_crowded(projector, returns);
     return;

@@ -42,6 +42,9 @@ enum class Phase : std::uint8_t { starting, tracking, lost };
 /// The default odometry: features of the image plane, their exact returns and firing times, aligned
 /// with a local map of Gaussian cells by a smooth trajectory through the scan.
 ///
+/// "The sensor's frame" here, and in all classes that the tracker uses, has the axes of the
+/// features (ScanFeatures::R_level_sensor). Odometry turns the results to the sensor's own axes.
+///
 /// Not thread-safe; no allocation after the first scans.
 class Tracker {
  public:
@@ -51,7 +54,7 @@ class Tracker {
   /// Once after each align(), with the same features.
   void update_map(const std::vector<Feature>& features, StageHook hook);
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;
-  /// As in Odometry.
+  /// As in Odometry, but for the axes.
   void aligned_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
   void mapped_points(std::size_t most, std::vector<Eigen::Vector3f>& out) const;
   [[nodiscard]] Phase phase() const { return phase_; }

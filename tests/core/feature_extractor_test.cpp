@@ -20,8 +20,11 @@ namespace lilo {
 namespace {
 
 /// Of a sensor like the HDL-64E: the beams of one firing look up to 18 degrees apart.
-Scan fanned_scan(double start_azimuth_rad, bool counter_clockwise = false, int firings = 1200) {
-  const auto drive = [](double s) { return Pose{so3_exp({0, 0, 0.05 * s}), {s, 0, 0}}; };
+Scan fanned_scan(double start_azimuth_rad, bool counter_clockwise = false, int firings = 1200,
+                 double tilt_rad = 0.0) {
+  const auto drive = [&](double s) {
+    return Pose{so3_exp({0, 0, 0.05 * s}) * so3_exp({0, tilt_rad, 0}), {s, 0, 0}};
+  };
   Scan scan = test::scan_of(test::yard(), test::even_beams(64, -24.8, 2.0), firings, drive);
   const float sense = counter_clockwise ? -1.0F : 1.0F;
   for (Return& r : scan.returns) {
@@ -41,6 +44,7 @@ auto values_of(const Feature& f) {
 }
 
 void expect_same(const ScanFeatures& a, const ScanFeatures& b, const std::string& what) {
+  EXPECT_EQ(a.R_level_sensor.coeffs(), b.R_level_sensor.coeffs()) << what;
   ASSERT_EQ(a.all.size(), b.all.size()) << what;
   const auto [at, other] =
       std::mismatch(a.all.begin(), a.all.end(), b.all.begin(),
@@ -72,7 +76,8 @@ std::vector<std::size_t> random_borders(std::size_t count, std::mt19937& random)
 
 class InParts : public testing::Test {
  protected:
-  /// One extractor for all, as in the daemon: a scan leaves nothing behind for the next.
+  /// One extractor for all, as in the daemon: a scan leaves nothing behind for the next but how
+  /// the sensor is tilted.
   void expect_same_in_parts(const Scan& scan, const std::string& what) {
     const ScanFeatures whole = of_whole(scan);
     EXPECT_GT(whole.all.size(), 15'000U);
@@ -102,6 +107,13 @@ TEST_F(InParts, WhicheverWayTheSensorTurns) {
 TEST_F(InParts, WhereTheSensorTurnsFast) {
   for (const double start_rad : {0.0, 2.0})
     expect_same_in_parts(fanned_scan(start_rad, false, 400), std::to_string(start_rad));
+}
+
+// Its first scan is looked at twice, the others are levelled as they come.
+TEST_F(InParts, WhereTheSensorIsTilted) {
+  const Scan scan = fanned_scan(0.0, false, 1200, 0.15);
+  EXPECT_NE(of_whole(scan).R_level_sensor.w(), 1.0);
+  expect_same_in_parts(scan, "tilted");
 }
 
 TEST_F(InParts, WithHalfOfTheViewBlocked) {
@@ -157,6 +169,14 @@ TEST_F(InParts, WithPacketsThatWereOvertaken) {
     extractor_.finish(scan, features);
     expect_same(features, whole, "overtaken by " + std::to_string(overtaken_by));
   }
+}
+
+TEST(FeatureExtractor, OnlyTheFirstScanTellsTheTilt) {
+  FeatureExtractor extractor{OdometryConfig{}};
+  ScanFeatures features;
+  extractor.finish(fanned_scan(0.0), features);
+  extractor.finish(fanned_scan(0.0, false, 1200, 0.15), features);
+  EXPECT_EQ(features.R_level_sensor.w(), 1.0);
 }
 
 // The daemon's way and that of the tools.
