@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/run/run_report.hpp"
 
+#include "tests/core/analytic_scene.hpp"
 #include "tools/run/statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -56,6 +57,18 @@ class BrokenSource : public ScanSource {
   std::uint64_t scans_, made_ = 0;
 };
 
+/// A scan of a sensor nose down by 10 degrees.
+class TiltedSource : public BrokenSource {
+ public:
+  TiltedSource() : BrokenSource(1) {}
+  bool next(Scan& scan) override {
+    if (!BrokenSource::next(scan)) return false;
+    scan = test::still_scan_of(test::yard(), test::even_beams(16, -15.0, 15.0),
+                               {so3_exp({0.0, 0.1745, 0.0}), Eigen::Vector3d::Zero()});
+    return true;
+  }
+};
+
 TEST(OdometryRun, KeepsWhatWasDoneBeforeTheSourceFailed) {
   BrokenSource source;
   int seen = 0;
@@ -80,6 +93,18 @@ TEST(RunReport, JsonHasTheDocumentedKeys) {
     EXPECT_TRUE(json["stages_ms"]["decode"][figure].is_number());
   }
   EXPECT_GT(json["peak_rss_mb"].get<double>(), 1.0);
+}
+
+TEST(RunReport, SaysByHowMuchScansWereLevelled) {
+  BrokenSource level;
+  TiltedSource tilted;
+  const auto ignore = [](const Scan&, const Estimate&) {};
+  const OdometryRun of_level = run_odometry(level, {}, ignore);
+  const OdometryRun of_tilted = run_odometry(tilted, {}, ignore);
+  EXPECT_EQ(nlohmann::json::parse(to_json(of_level))["tilt_deg"], 0.0);
+  EXPECT_EQ(to_text(of_level).find("against the ground"), std::string::npos);
+  EXPECT_NEAR(nlohmann::json::parse(to_json(of_tilted))["tilt_deg"].get<double>(), 10.0, 0.2);
+  EXPECT_NE(to_text(of_tilted).find("deg against the ground"), std::string::npos);
 }
 
 TEST(RunReport, SaysWhatGrowsFromTenthToTenth) {

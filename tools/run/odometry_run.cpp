@@ -62,6 +62,7 @@ OdometryRun run_odometry(ScanSource& source, const OdometryConfig& config, const
   run.wall_s = static_cast<double>(busy_ns) * 1e-9;
   run.peak_rss_mb = memory_mb("VmHWM");
   run.beams = odometry.beam_estimate();
+  run.tilt_rad = odometry.tilt_rad();
   run.failure = source.error();
   run.driver_counts = source.driver_counts();
   run.source_counts = source.source_counts();

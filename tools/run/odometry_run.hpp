@@ -28,6 +28,7 @@ struct OdometryRun {
   double recorded_s = 0.0;   ///< from the first firing to the last
   double peak_rss_mb = 0.0;  ///< most memory of this process up to here, 10^6 bytes
   BeamEstimate beams;        ///< what was found of them
+  double tilt_rad = 0.0;     ///< as Odometry::tilt_rad()
   std::string failure;  ///< why the recording ended early, ScanSource::error(); empty: it did not
 };
 

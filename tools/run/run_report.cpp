@@ -91,6 +91,11 @@ std::string beams_line(const BeamEstimate& beams) {
       kDegreesPerRadian * largest_azimuth_rad(beams));
 }
 
+std::string tilt_line(double tilt_rad) {
+  return fmt::format("tilt             {:.1f} deg against the ground of the first scan, levelled\n",
+                     kDegreesPerRadian * tilt_rad);
+}
+
 std::string status_text(const OdometryRun& run) {
   std::string text;
   for (std::size_t k = 0; k < kStatusNames.size(); ++k) {
@@ -119,6 +124,7 @@ std::string to_json(const OdometryRun& run) {
   json["packets_malformed"] = driver.malformed_packets;
   json["distance_m"] = distance_m(run);
   json["status"] = status;
+  json["tilt_deg"] = kDegreesPerRadian * run.tilt_rad;
   json["cpu_ms_per_scan"] = total.mean;
   json["total_ms"] = json_of(total);
   json["stages_ms"] = stages;
@@ -143,6 +149,7 @@ std::string to_text(const OdometryRun& run) {
   }
   fmt::format_to(out, "distance         {:.2f} m\n", distance_m(run));
   if (run.beams.ring_count > 0) text += beams_line(run.beams);
+  if (run.tilt_rad > 0.0) text += tilt_line(run.tilt_rad);
   text += "CPU ms a scan       mean      p50      p99      max\n";
   for (const auto& [name, values] : stage_statistics(run.timer)) text += table_line(name, values);
   text += table_line("total", statistics(run.timer.total_ms()));
