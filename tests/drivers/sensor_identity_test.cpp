@@ -139,44 +139,41 @@ TEST(SensorIdentity, AnotherModelMayReplaceOneThatIsSilent) {
 }
 
 // The decoder's first table is that of a VLP-16, so that no packet makes it change to it.
-TEST(SensorCalibration, AFileOverridesAVlp16sOwn) {
-  Calibration calibration = built_in_calibration(*find_sensor(SensorModel::vlp16));
-  for (LaserCorrection& laser : calibration.lasers) laser.vert_rad += 0.01;
-  SensorConfig config;
-  config.calibration_file = testing::TempDir() + "/override_16.yaml";
-  ASSERT_TRUE(store_calibration(config.calibration_file, calibration));
-  const auto packets = packets_of(SensorModel::vlp16, 400);
-  const Outcome own = test::build(packets), file = test::build(packets, config);
-  ASSERT_FALSE(file.scans.empty());
-  EXPECT_EQ(file.status.calibration, CalibrationOrigin::file);
-  for (std::size_t ring = 0; ring < 16; ++ring)
-    EXPECT_NEAR(file.scans[0].beams.elevation_rad[ring] - own.scans[0].beams.elevation_rad[ring],
-                0.01F, 1e-6F);
+TEST(SensorCalibration, AFileOverridesTheModelsOwn) {
+  for (const SensorModel model : {SensorModel::vlp16, SensorModel::vlp32c}) {
+    const SensorTable& table = *find_sensor(model);
+    SCOPED_TRACE(table.name);
+    Calibration calibration = built_in_calibration(table);
+    for (LaserCorrection& laser : calibration.lasers) laser.vert_rad += 0.01;
+    SensorConfig config;
+    config.calibration_file = testing::TempDir() + "/override.yaml";
+    ASSERT_TRUE(store_calibration(config.calibration_file, calibration));
+    const auto packets = packets_of(model, 400);
+    const Outcome own = test::build(packets), file = test::build(packets, config);
+    ASSERT_FALSE(file.scans.empty());
+    EXPECT_EQ(own.status.calibration, CalibrationOrigin::built_in);
+    EXPECT_EQ(file.status.calibration, CalibrationOrigin::file);
+    for (std::size_t ring = 0; ring < calibration.lasers.size(); ++ring)
+      EXPECT_NEAR(file.scans[0].beams.elevation_rad[ring] - own.scans[0].beams.elevation_rad[ring],
+                  0.01F, 1e-6F);
+  }
 }
 
-TEST(SensorCalibration, AFileOverridesTheModelsOwn) {
-  const SensorTable& table = *find_sensor(SensorModel::vlp32c);
-  Calibration calibration = built_in_calibration(table);
-  for (LaserCorrection& laser : calibration.lasers) laser.vert_rad += 0.01;
-  SensorConfig config;
-  config.calibration_file = testing::TempDir() + "/override.yaml";
-  ASSERT_TRUE(store_calibration(config.calibration_file, calibration));
-  const auto packets = packets_of(SensorModel::vlp32c, 400);
-  const Outcome own = test::build(packets), file = test::build(packets, config);
-  ASSERT_FALSE(file.scans.empty());
-  EXPECT_EQ(own.status.calibration, CalibrationOrigin::built_in);
-  EXPECT_EQ(file.status.calibration, CalibrationOrigin::file);
-  for (std::size_t ring = 0; ring < 32; ++ring)
-    EXPECT_NEAR(file.scans[0].beams.elevation_rad[ring] - own.scans[0].beams.elevation_rad[ring],
-                0.01F, 1e-6F);
-  // The corrections that an HDL-64E needs hold for others as well: here 10 cm of distance.
+// The corrections that an HDL-64E needs hold for others as well: here 10 cm of distance.
+TEST(SensorCalibration, AFileCorrectsDistancesOfEveryModel) {
+  Calibration calibration = built_in_calibration(*find_sensor(SensorModel::vlp32c));
   for (LaserCorrection& laser : calibration.lasers)
     laser = {.rot_rad = laser.rot_rad,
-             .vert_rad = laser.vert_rad - 0.01,
+             .vert_rad = laser.vert_rad,
              .dist_m = 0.1,
              .vert_offset_m = laser.vert_offset_m};
+  SensorConfig config;
+  config.calibration_file = testing::TempDir() + "/longer.yaml";
   ASSERT_TRUE(store_calibration(config.calibration_file, calibration));
-  const Outcome longer = test::build(packets, config);
+  const auto packets = packets_of(SensorModel::vlp32c, 400);
+  const Outcome own = test::build(packets), longer = test::build(packets, config);
+  ASSERT_FALSE(own.scans.empty());
+  ASSERT_EQ(longer.scans.size(), own.scans.size());
   ASSERT_EQ(longer.scans[0].returns.size(), own.scans[0].returns.size());
   for (std::size_t i = 0; i < own.scans[0].returns.size(); i += 101) {
     const Return &a = own.scans[0].returns[i], &b = longer.scans[0].returns[i];
