@@ -39,8 +39,8 @@ struct BeamCorrection {
 /// proportion to r^2: a paraboloid. Ground alone does not show this, because on a path that bends
 /// up or down all scans agree.
 inline double common_part_of(double elevation_rad) {
-  if (elevation_rad >= 0.0)
-    return 0.0;  // a level sensor sees no ground with it; what a tilted one sees stays
+  // A level sensor sees no ground with such a ring. That of a tilted one is not corrected.
+  if (elevation_rad >= 0.0) return 0.0;
   return calibration::kCommonAt_rad / std::max(-elevation_rad, calibration::kNearHorizon_rad);
 }
 
