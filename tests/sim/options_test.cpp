@@ -47,9 +47,9 @@ class SimCommand : public testing::Test {
 };
 
 TEST_F(SimCommand, RefusesNumbersThatAreNone) {
-  for (const char* option :
-       {"--duration-s", "--speed-mps", "--rpm", "--loss", "--tilt-deg", "--sensor-height-m",
-        "--range-sigma-m", "--host-step-s", "--hour-wrap-at-s", "--turn-rate-dps"}) {
+  for (const char* option : {"--duration-s", "--speed-mps", "--rpm", "--loss", "--tilt-deg",
+                             "--roll-deg", "--sensor-height-m", "--range-sigma-m", "--host-step-s",
+                             "--hour-wrap-at-s", "--turn-rate-dps"}) {
     for (const char* value : {"nan", "-nan", "inf", "-inf", "1e999"}) {
       const std::string said = complaint(std::string(option) + " " + value);
       EXPECT_NE(said.find(std::string(option) + ": expected a number from "), std::string::npos)

@@ -169,6 +169,21 @@ TEST(SensorPath, StandsStillUntilItSetsOffAndTurnsAsFastAsAsked) {
   EXPECT_NEAR(std::acos(0.5 * (turn.trace() - 1.0)) * 180.0 / 3.14159265358979, 45.0, 0.5);
 }
 
+TEST(SensorPath, ASensorMayBeMountedUpsideDownAndNoseDown) {
+  const Route route({{200.0, 0.0, 0.0}}, 60.0);
+  const Terrain flat({-100, -100, 200, 100}, 0.5, [](double, double) -> Terrain::Sample {
+    return {0.0, Material::soil};
+  });
+  const MotionOptions motion{.speed_mps = 0.0, .tilt_deg = 10.0, .roll_deg = 180.0};
+  const SensorPath path(motion, {.wander_m = 0.0}, route, Drive(motion, {}, route), flat);
+  const Eigen::Matrix3d R_world_sensor = path.at(0.0).rotation;
+  const double tilt_rad = 10.0 * std::numbers::pi / 180.0;
+  const Vec3 forward(std::cos(tilt_rad), 0.0, -std::sin(tilt_rad));
+  const Vec3 up(-std::sin(tilt_rad), 0.0, -std::cos(tilt_rad));
+  EXPECT_LT((R_world_sensor.col(0) - forward).norm(), 1e-6);
+  EXPECT_LT((R_world_sensor.col(2) - up).norm(), 1e-6);
+}
+
 // At a constant rate after a ramp the turn is as if it had begun, at full rate, half way up it.
 TEST(SensorPath, BeginsToTurnWithinTheRamp) {
   const Route route({{200.0, 0.0, 0.0}}, 60.0);

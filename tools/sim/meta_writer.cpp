@@ -75,6 +75,7 @@ void write_meta(const std::string& folder, const SimOptions& options, const SimS
   meta["two_point"] = options.sensor.two_point;
   meta["hdl_azimuth"] = options.sensor.turning_block ? "firing" : "block";
   meta["tilt_deg"] = options.motion.tilt_deg;
+  meta["roll_deg"] = options.motion.roll_deg;
   meta["shake_hz"] = options.motion.shake_hz;
   meta["shake_dps"] = options.motion.shake_dps;
   meta["gps"] = options.sensor.gps;

@@ -18,6 +18,7 @@ struct MotionOptions {
   double turn_rate_dps = 0.0;    ///< turns on top of the route's heading, as on a turntable
   double turn_ramp_s = 1.0;      ///< until it turns so fast
   double tilt_deg = 0.0;         ///< of the sensor on its mount, nose down
+  double roll_deg = 0.0;         ///< then about its x, right side down; 180: upside down
   /// A wheel or a mast that shakes the body while it drives: pitch at this frequency, roll a little
   /// slower, and the root mean square of each one's rate.
   double shake_hz = 10.0, shake_dps = 0.0;

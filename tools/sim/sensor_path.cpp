@@ -111,12 +111,21 @@ class Shake {
   Wave pitch_, roll_;
 };
 
+/// From the sensor's axes to the body's.
+Eigen::Matrix3d mount(const MotionOptions& options) {
+  const SinCos tilt = sin_cos(options.tilt_deg * std::numbers::pi / 180.0);
+  const SinCos roll = sin_cos(options.roll_deg * std::numbers::pi / 180.0);
+  Eigen::Matrix3d nose_down, right_side_down;
+  nose_down << tilt.cos, 0.0, tilt.sin, 0.0, 1.0, 0.0, -tilt.sin, 0.0, tilt.cos;
+  right_side_down << 1.0, 0.0, 0.0, 0.0, roll.cos, -roll.sin, 0.0, roll.sin, roll.cos;
+  return nose_down * right_side_down;
+}
+
 }  // namespace
 
 SensorPath::SensorPath(const MotionOptions& options, const Vehicle& vehicle, const Route& route,
                        const Drive& drive, const Terrain& terrain) {
-  const SinCos tilt = sin_cos(options.tilt_deg * std::numbers::pi / 180.0);
-  mount_ << tilt.cos, 0.0, tilt.sin, 0.0, 1.0, 0.0, -tilt.sin, 0.0, tilt.cos;
+  mount_ = mount(options);
   constexpr int kSubsteps = 4;
   const double dt = kKnot_s / kSubsteps;
   const int knots = static_cast<int>(std::ceil((options.duration_s + 1.6) / kKnot_s));

@@ -70,6 +70,8 @@ void add_motion(CLI::App& command, SimOptions& options) {
   group.number("--turn-ramp-s", motion.turn_ramp_s, 0.05, 60.0, "Until it turns so fast")
       ->capture_default_str();
   group.number("--tilt-deg", motion.tilt_deg, -45.0, 45.0, "Sensor mounted nose down");
+  group.number("--roll-deg", motion.roll_deg, -180.0, 180.0,
+               "Sensor mounted right side down; 180: upside down");
   group.number("--shake-dps", motion.shake_dps, 0.0, 90.0,
                "Rate, rms, at which wheels or mast shake it while it drives");
   group.number("--shake-hz", motion.shake_hz, 0.5, 20.0, "How often")->capture_default_str();
