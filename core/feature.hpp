@@ -24,7 +24,7 @@ struct Feature {
   /// so is rough ground between rings far apart.
   float dx_m, dy_m, dz_m;
   FeatureKind kind;
-  std::uint8_t ring;
+  std::uint8_t ring;         ///< 0: of the lowest beam, however the sensor is mounted
   std::uint16_t column = 0;  ///< of the range image
 };
 

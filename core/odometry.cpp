@@ -7,6 +7,9 @@
 #endif
 #include "core/tracking/tracker.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <variant>
 
@@ -23,9 +26,16 @@ struct Odometry::Impl {
   FeatureExtractor extractor;
   ScanFeatures features;
   Eigen::Quaterniond R_level_sensor = Eigen::Quaterniond::Identity();  // of the last scan
+  std::optional<BeamEstimate> kept_beams;  // until the first scan with features tells the axes
+  const bool estimates_beams = false;
 
   /// Of a level sensor nothing is turned: its poses keep their bits.
   [[nodiscard]] bool is_levelled() const { return R_level_sensor.w() != 1.0; }
+  void resume_kept_beams() {
+    if (!kept_beams) return;
+    std::get<core::Tracker>(profile).resume_beams(in_level_axes(*kept_beams, R_level_sensor));
+    kept_beams.reset();
+  }
 };
 
 namespace {
@@ -50,7 +60,9 @@ bool has_profile(Profile profile) {
 }
 
 Odometry::Odometry(const OdometryConfig& config)
-    : impl_(new Impl{make_profile(config), FeatureExtractor(config), {}}) {}
+    : impl_(new Impl{.profile = make_profile(config),
+                     .extractor = FeatureExtractor(config),
+                     .estimates_beams = estimates_beams(config)}) {}
 
 Odometry::~Odometry() = default;
 
@@ -64,8 +76,11 @@ Estimate Odometry::process(const Scan& scan, StageHook hook) {
 
 Estimate Odometry::align(const Scan& scan, ScanFeatures& features, StageHook hook) {
   impl_->R_level_sensor = features.R_level_sensor;
-  const Estimate estimate = std::visit(
-      [&](auto& profile) { return profile.align(scan, features.all, hook); }, impl_->profile);
+  if (!features.all.empty()) impl_->resume_kept_beams();  // its axes are those of all from it on
+  const BeamTable beams = in_level_axes(scan.beams, features.R_level_sensor);
+  const Estimate estimate =
+      std::visit([&](auto& profile) { return profile.align(scan, beams, features.all, hook); },
+                 impl_->profile);
   return impl_->is_levelled() ? in_sensor_axes(estimate, impl_->R_level_sensor) : estimate;
 }
 
@@ -74,17 +89,19 @@ void Odometry::update_map(const ScanFeatures& features, StageHook hook) {
 }
 
 void Odometry::resume_beams(const BeamEstimate& kept) {
-  auto* tracker = std::get_if<core::Tracker>(&impl_->profile);
-  if (tracker != nullptr) tracker->resume_beams(kept);
+  if (impl_->estimates_beams && kept.ring_count > 0) impl_->kept_beams = kept;
 }
 
 BeamEstimate Odometry::beam_estimate() const {
+  if (impl_->kept_beams) return *impl_->kept_beams;
   const auto* tracker = std::get_if<core::Tracker>(&impl_->profile);
-  return tracker != nullptr ? tracker->beam_estimate() : BeamEstimate{};
+  if (tracker == nullptr) return {};
+  return in_sensor_axes(tracker->beam_estimate(), impl_->R_level_sensor);
 }
 
 double Odometry::tilt_rad() const {
-  return impl_->R_level_sensor.angularDistance(Eigen::Quaterniond::Identity());
+  const Eigen::Vector3d z = impl_->R_level_sensor * Eigen::Vector3d::UnitZ();
+  return impl_->is_levelled() ? std::acos(std::clamp(z.z(), -1.0, 1.0)) : 0.0;
 }
 
 std::vector<Eigen::Vector3f> Odometry::map_points() const {

@@ -11,7 +11,8 @@ namespace lilo {
 
 /// What is known of the errors of a sensor's beams: to be kept from one run to the next. Of a
 /// levelled sensor azimuths are about the vertical and elevations are towards it
-/// (core::BeamCorrection), so that the estimate holds for that tilt.
+/// (core::BeamCorrection), so that the estimate holds for that tilt. The order of the
+/// rings and all signs are the sensor's, also if it is upside down.
 /// Trivially copyable, so that threads can share it.
 struct BeamEstimate {
   int ring_count = 0;                             ///< 0: nothing is known
@@ -20,8 +21,8 @@ struct BeamEstimate {
   /// To be added to an azimuth: [0] * cos(azimuth) + [1] * sin(azimuth).
   std::array<double, 2> eccentricity_rad{};
   double eccentricity_sigma_rad = 0.0;
-  /// Of a ring at -5 degrees. To be added to each ring that saw the ground, in
-  /// inverse proportion to its elevation.
+  /// Of a ring 5 degrees off the horizon, on the side of the ground. To be added to each ring that
+  /// saw the ground, in inverse proportion to its elevation.
   double common_elevation_rad = 0.0;
   double common_elevation_sigma_rad = 0.0;
   /// What the path alone tells of it, without what the errors of the rings let expect. It is not

@@ -63,6 +63,16 @@ inline constexpr int kPlaneFits = 5;
 /// Radians. A sensor is levelled if it is tilted by more than the first and less than the second.
 /// Stairs have 30 degrees and more.
 inline constexpr double kLeastTilt_rad = 0.05, kMostTilt_rad = 0.5;
+/// A plane above with more than this many times as many flat surfaces as a floor is the ground.
+/// There were 11.5 times as many or more above 49 upside-down sensors of 16 beams outdoors. There
+/// were 9.6 times as many at most above upright ones in halls 8 to 30 m wide, 1.8 to 3.5 m above
+/// the floor and 0.3 to 1.2 m below a ceiling wider than kWidestCeiling_m.
+inline constexpr double kMostCeiling = 10.0;
+/// Metres, 1 sigma across: a plane above that is less wide may be the ceiling of a room, of whose
+/// floor hardly anything is seen. Of 5400 scans carried through the rooms of velosim 148 saw less
+/// than a third as many flat surfaces below as in a ceiling. It was 0.2 to 1.7 m wide, and wider in
+/// 10 of them. The ground was 2.0 to 7.2 m wide above those upside-down sensors but one.
+inline constexpr double kWidestCeiling_m = 2.0;
 /// Pixels of an image at most, and so features. Range, with 64 rings: 512 to 1024 columns.
 inline constexpr int kMostPixels = 64 * 576;
 /// Metres: voxels of ground and of structure in the first scan, before they adapt.

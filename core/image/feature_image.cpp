@@ -2,6 +2,7 @@
 #include "core/image/feature_image.hpp"
 
 #include "core/image/constants.hpp"
+#include "core/level_frame.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -42,7 +43,7 @@ std::vector<Feature>& FeatureImage::build(const Scan& scan) {
 }
 
 void FeatureImage::begin(const BeamTable& beams, const Eigen::Quaterniond& R_level_sensor) {
-  beams_ = beams;
+  beams_ = in_level_axes(beams, R_level_sensor);
   R_level_sensor_ = R_level_sensor.toRotationMatrix().cast<float>();
   columns_ = columns_for(beams.ring_count, most_columns_);
   margin_ = static_cast<int>(std::ceil(image::kFiringSpread_rad * columns_per_rad(columns_)));

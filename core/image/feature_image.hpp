@@ -47,7 +47,7 @@ class FeatureImage {
   static int columns_for(int rings, int most);
 
   /// `R_level_sensor`: to the axes in which returns are classified and features are told
-  /// (Levelling). Columns are those of the sensor's azimuth.
+  /// (Levelling). Rows are rings in those axes (in_level_axes()), columns the sensor's azimuths.
   void begin(const BeamTable& beams,
              const Eigen::Quaterniond& R_level_sensor = Eigen::Quaterniond::Identity());
   /// The next returns of the scan, in its order.

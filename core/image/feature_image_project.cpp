@@ -14,7 +14,12 @@ struct FeatureImage::Projector {
   std::uint32_t rows, columns;
   float per_rad, nearest2, farthest2;
   Eigen::Matrix3f R_level_sensor;
+  std::uint32_t reversed = R_level_sensor(2, 2) < 0.0F ? ~0U : 0U;  // all bits: upside down
 
+  /// Of an upside-down sensor rows - 1 - ring. Not below `rows` if the ring is not.
+  [[nodiscard]] std::uint32_t row_of(const Return& r) const {
+    return (r.ring ^ reversed) + (rows & reversed);
+  }
   /// Columns begin straight behind and go clockwise.
   [[nodiscard]] std::uint32_t column_of(const Return& r) const {
     const auto column = static_cast<std::uint32_t>(
@@ -22,22 +27,23 @@ struct FeatureImage::Projector {
     return column < columns ? column : 0;  // at the seam rounding reaches the last column's end
   }
   /// Of any ring, without a branch.
-  [[nodiscard]] std::size_t is_free(std::uint32_t ring, std::uint32_t column) const {
-    const std::uint64_t word = filled[column][ring / 64U % std::tuple_size_v<Filled>];
-    return static_cast<std::size_t>(~word >> (ring % 64U) & 1U);
+  [[nodiscard]] std::size_t is_free(const Return& r, std::uint32_t column) const {
+    const std::uint32_t row = row_of(r);
+    const std::uint64_t word = filled[column][row / 64U % std::tuple_size_v<Filled>];
+    return static_cast<std::size_t>(~word >> (row % 64U) & 1U);
   }
   /// False where the pixel is taken or the return out of range.
   bool put(const Return& r, std::uint32_t column) const {
-    const std::uint32_t ring = r.ring;
-    if (ring >= rows) return false;
-    const std::uint64_t bit = std::uint64_t{1} << (ring % 64U);
-    std::uint64_t& word = filled[column][ring / 64U];
+    const std::uint32_t row = row_of(r);
+    if (row >= rows) return false;
+    const std::uint64_t bit = std::uint64_t{1} << (row % 64U);
+    std::uint64_t& word = filled[column][row / 64U];
     if ((word & bit) != 0) return false;
     const float range2 = r.x_m * r.x_m + r.y_m * r.y_m + r.z_m * r.z_m;
     if (!(range2 >= nearest2 && range2 <= farthest2)) return false;  // and NaN
     word |= bit;
     const Eigen::Vector3f p = R_level_sensor * Eigen::Vector3f(r.x_m, r.y_m, r.z_m);
-    pixels[column * rows + ring] = {p.x(), p.y(), p.z(), r.t_ns};
+    pixels[column * rows + row] = {p.x(), p.y(), p.z(), r.t_ns};
     return true;
   }
 };
@@ -74,7 +80,7 @@ void FeatureImage::project_crowded(const Projector& projector, std::span<const R
       const std::uint32_t column = projector.column_of(some[k]);
       at[count] = static_cast<std::uint32_t>(k);
       columns[count] = column;
-      count += projector.is_free(some[k].ring, column);
+      count += projector.is_free(some[k], column);
     }
     for (std::size_t k = 0; k < count; ++k) {
       if (projector.put(some[at[k]], columns[k])) note(static_cast<int>(columns[k]));

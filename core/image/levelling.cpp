@@ -21,6 +21,9 @@ using Points = std::span<const Eigen::Vector3d>;  // m, sensor's axes
 struct Plane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // a unit vector, up
   double offset_m = 0.0;                              // of points: normal . point
+  double share = 0.0;                                 // of all points that is in it
+  double thickness_m = 0.0;                           // 1 sigma of these, along the normal
+  double width_m = 0.0;  // 1 sigma of these, along the direction in which they spread less
 
   [[nodiscard]] bool has(const Eigen::Vector3d& point_m) const {
     return std::abs(normal.dot(point_m) - offset_m) < image::kInGround * point_m.norm();
@@ -28,9 +31,11 @@ struct Plane {
   [[nodiscard]] double tilt_rad() const { return std::acos(std::min(normal.z(), 1.0)); }
 };
 
-bool is_flat_and_near(const Feature& f) {
-  const float horizontal_m = std::sqrt(f.x_m * f.x_m + f.y_m * f.y_m);
-  return f.kind == FeatureKind::ground && f.z_m < 0.0F && horizontal_m < image::kNearGround_m;
+/// Half a turn about x.
+Eigen::Quaterniond turned_over() { return {0.0, 1.0, 0.0, 0.0}; }
+
+bool is_flat_within(float most_m, const Feature& f) {
+  return f.kind == FeatureKind::ground && f.x_m * f.x_m + f.y_m * f.y_m < most_m * most_m;
 }
 
 /// None where the points are nearly in a line, or the plane is too steep for a tilted sensor.
@@ -98,8 +103,8 @@ std::optional<Plane> best_plane(Points points_m) {
   return best;
 }
 
-/// None where too few points are in one plane, or where they are a strip.
-std::optional<Plane> ground(Points points_m) {
+/// The plane with the most points; none where there are too few points, or all planes too steep.
+std::optional<Plane> fitted_plane(Points points_m) {
   if (points_m.size() < tracking::kMinFeatures) return std::nullopt;
   std::optional<Plane> plane = best_plane(points_m);
   if (!plane) return std::nullopt;
@@ -109,29 +114,69 @@ std::optional<Plane> ground(Points points_m) {
     plane = Plane{normal, normal.dot(support.mean_m)};
     support = support_of(*plane, points_m);
   }
-  const bool is_most = 2.0 * support.count > static_cast<double>(points_m.size());
-  const bool is_strip = support.sigma_m[0] > image::kMostThickness * support.sigma_m[1];
-  return is_most && !is_strip ? plane : std::nullopt;
+  plane->share = support.count / static_cast<double>(points_m.size());
+  plane->thickness_m = support.sigma_m[0];
+  plane->width_m = support.sigma_m[1];
+  return plane;
+}
+
+/// Whether the plane is the ground, if it is on the right side of the sensor.
+bool is_ground(const Plane& plane) {
+  const bool is_strip = plane.thickness_m > image::kMostThickness * plane.width_m;
+  return plane.share > 0.5 && !is_strip;
+}
+
+/// Turns the normal of the plane to z.
+Eigen::Quaterniond levelled(const Plane& plane) {
+  if (plane.tilt_rad() < image::kLeastTilt_rad || plane.tilt_rad() > image::kMostTilt_rad) {
+    return Eigen::Quaterniond::Identity();
+  }
+  return Eigen::Quaterniond::FromTwoVectors(plane.normal, Eigen::Vector3d::UnitZ());
 }
 
 }  // namespace
 
 Eigen::Quaterniond Levelling::R_level_sensor(const std::vector<Feature>& features) {
+  const double count = take(features, Side::above, image::kNearGround_m);
+  const std::optional<Plane> above = fitted_plane(points_m_);
+  if (above && is_ground(*above) && above->width_m > image::kWidestCeiling_m &&
+      above->share * count > image::kMostCeiling * count_floor(features)) {
+    return levelled(*above) * turned_over();
+  }
+  take(features, Side::below, image::kNearGround_m);
+  const std::optional<Plane> below = fitted_plane(points_m_);
+  return below && is_ground(*below) ? levelled(*below) : Eigen::Quaterniond::Identity();
+}
+
+/// Twice as far as the ground that tells the tilt: to a sensor that is 4 m high, of 16 beams the
+/// nearest meets the floor at 15 m. Without a limit, canopies passed for a floor.
+double Levelling::count_floor(const std::vector<Feature>& features) {
+  const double count = take(features, Side::below, 2.0F * image::kNearGround_m);
+  const std::optional<Plane> below = fitted_plane(points_m_);
+  // A plane that passes above the sensor is a far part of the ground overhead, which a tilted
+  // sensor sees below its horizon.
+  const bool is_floor = below && below->offset_m < 0.0;
+  // So that a canopy overhead of fewer than kMostCeiling * kMinFeatures is no ground.
+  constexpr auto kLeast = static_cast<double>(tracking::kMinFeatures);
+  return is_floor ? std::max(below->share * count, kLeast) : kLeast;
+}
+
+double Levelling::take(const std::vector<Feature>& features, Side side, float most_m) {
+  const auto is_wanted = [&](const Feature& f) {
+    return is_flat_within(most_m, f) && is_overhead(f) == (side == Side::above);
+  };
   const auto count =
-      static_cast<std::size_t>(std::count_if(features.begin(), features.end(), is_flat_and_near));
+      static_cast<std::size_t>(std::count_if(features.begin(), features.end(), is_wanted));
   const std::size_t stride = 1 + count / kMostPoints;
+  const Eigen::Matrix3d turn = side == Side::above ? turned_over().toRotationMatrix()
+                                                   : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
   points_m_.clear();
   std::size_t n = 0;
   for (const Feature& f : features) {
-    if (!is_flat_and_near(f) || n++ % stride != 0) continue;
-    points_m_.push_back(Eigen::Vector3f(f.x_m, f.y_m, f.z_m).cast<double>());
+    if (!is_wanted(f) || n++ % stride != 0) continue;
+    points_m_.push_back(turn * Eigen::Vector3f(f.x_m, f.y_m, f.z_m).cast<double>());
   }
-  const std::optional<Plane> plane = ground(points_m_);
-  const double tilt_rad = plane ? plane->tilt_rad() : 0.0;
-  if (tilt_rad < image::kLeastTilt_rad || tilt_rad > image::kMostTilt_rad) {
-    return Eigen::Quaterniond::Identity();
-  }
-  return Eigen::Quaterniond::FromTwoVectors(plane->normal, Eigen::Vector3d::UnitZ());
+  return static_cast<double>(count);
 }
 
 }  // namespace lilo::core

@@ -26,7 +26,8 @@ class PaperOdometry {
   Estimate process(const Scan& scan, StageHook hook);
   /// The same calls as profile default. The method finds its own features, and its map grows before
   /// the pose is returned.
-  Estimate align(const Scan& scan, const std::vector<Feature>& /*features*/, StageHook hook) {
+  Estimate align(const Scan& scan, const BeamTable& /*beams*/,
+                 const std::vector<Feature>& /*features*/, StageHook hook) {
     return process(scan, hook);
   }
   void update_map(const std::vector<Feature>& /*features*/, StageHook /*hook*/) {}

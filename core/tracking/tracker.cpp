@@ -60,11 +60,12 @@ void Tracker::resume_beams(const BeamEstimate& kept) {
   if (calibrates_) calibration_.resume(kept);
 }
 
-Estimate Tracker::align(const Scan& scan, std::vector<Feature>& features, StageHook hook) {
-  calibration_.begin_scan(scan.beams);
+Estimate Tracker::align(const Scan& scan, const BeamTable& beams, std::vector<Feature>& features,
+                        StageHook hook) {
+  calibration_.begin_scan(beams);
   local_.set_sensitivity(calibration_.sensitivity());
   if (calibrates_) calibration_.correction().apply(features);
-  beams_ = scan.beams;
+  beams_ = beams;
   // In rooms little of the floor is seen, and ceilings hold height and attitude as well. Elsewhere
   // flat surfaces overhead are mostly canopies.
   scan_ = observe(scan, selection_.choose(features, scan_.is_room));

@@ -49,8 +49,10 @@ enum class Phase : std::uint8_t { starting, tracking, lost };
 class Tracker {
  public:
   explicit Tracker(const OdometryConfig& config);
-  /// Corrects the features in place by what is known of the beams.
-  Estimate align(const Scan& scan, std::vector<Feature>& features, StageHook hook);
+  /// `beams`: by the rings of the features. Corrects the features in place by what is known of
+  /// them.
+  Estimate align(const Scan& scan, const BeamTable& beams, std::vector<Feature>& features,
+                 StageHook hook);
   /// Once after each align(), with the same features.
   void update_map(const std::vector<Feature>& features, StageHook hook);
   [[nodiscard]] std::vector<Eigen::Vector3f> map_points() const;

@@ -2,8 +2,10 @@
 // A scan's features are the same bits, whole or in parts, wherever the parts are divided.
 #include "core/feature_extractor.hpp"
 
+#include "core/level_frame.hpp"
 #include "core/odometry.hpp"
 #include "tests/core/analytic_scene.hpp"
+#include "tests/core/mounts.hpp"
 #include "tests/core/profiles.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +13,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <random>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -19,13 +23,16 @@
 namespace lilo {
 namespace {
 
+using test::kNoseDown, test::kUpright, test::kUpsideDown;
+
 /// Of a sensor like the HDL-64E: the beams of one firing look up to 18 degrees apart.
 Scan fanned_scan(double start_azimuth_rad, bool counter_clockwise = false, int firings = 1200,
-                 double tilt_rad = 0.0) {
+                 const Eigen::Quaterniond& R_body_sensor = kUpright) {
   const auto drive = [&](double s) {
-    return Pose{so3_exp({0, 0, 0.05 * s}) * so3_exp({0, tilt_rad, 0}), {s, 0, 0}};
+    return Pose{so3_exp({0, 0, 0.05 * s}) * R_body_sensor, {s, 0, 0}};
   };
-  Scan scan = test::scan_of(test::yard(), test::even_beams(64, -24.8, 2.0), firings, drive);
+  const BeamTable beams = test::even_beams(64, -24.8, 2.0);
+  Scan scan = test::scan_of(test::yard(), in_level_axes(beams, R_body_sensor), firings, drive);
   const float sense = counter_clockwise ? -1.0F : 1.0F;
   for (Return& r : scan.returns) {
     const float fan_rad = 0.157F * static_cast<float>(r.ring % 9 - 4) / 4.0F;
@@ -111,9 +118,15 @@ TEST_F(InParts, WhereTheSensorTurnsFast) {
 
 // Its first scan is looked at twice, the others are levelled as they come.
 TEST_F(InParts, WhereTheSensorIsTilted) {
-  const Scan scan = fanned_scan(0.0, false, 1200, 0.15);
+  const Scan scan = fanned_scan(0.0, false, 1200, kNoseDown);
   EXPECT_NE(of_whole(scan).R_level_sensor.w(), 1.0);
   expect_same_in_parts(scan, "tilted");
+}
+
+TEST_F(InParts, WhereTheSensorIsUpsideDown) {
+  const Scan scan = fanned_scan(0.0, false, 1200, kUpsideDown);
+  EXPECT_TRUE(is_upside_down(of_whole(scan).R_level_sensor));
+  expect_same_in_parts(scan, "upside down");
 }
 
 TEST_F(InParts, WithHalfOfTheViewBlocked) {
@@ -171,11 +184,48 @@ TEST_F(InParts, WithPacketsThatWereOvertaken) {
   }
 }
 
+/// Features of a sensor in the yard, by ring and firing; `firings` of them, counter-clockwise from
+/// ahead. Upright its rings are closer together below.
+std::vector<Feature> by_ray_in_the_yard(const Eigen::Quaterniond& R_world_sensor, int firings) {
+  constexpr int kRings = 16;
+  BeamTable beams = test::even_beams(kRings, -16.0, 16.0);
+  for (float& rad : std::span(beams.elevation_rad).first(kRings)) rad += 0.7F * rad * rad - 0.06F;
+  const ScanFeatures found = of_whole(
+      test::scan_of(test::yard(), in_level_axes(beams, R_world_sensor), firings, [&](double) {
+        return Pose{R_world_sensor, {0.0, 0.0, 0.0}};
+      }));
+  std::vector<Feature> by_ray(static_cast<std::size_t>(kRings * firings));
+  for (const Feature& f : found.all) {
+    const float turns = std::atan2(f.y_m, f.x_m) / (2.0F * std::numbers::pi_v<float>)+1.0F;
+    const auto firing = std::lround(turns * static_cast<float>(firings)) % firings;
+    by_ray[static_cast<std::size_t>(int{f.ring} * std::ptrdiff_t{firings} + firing)] = f;
+  }
+  return by_ray;
+}
+
+// Its rays are the same, and so are the features in level axes.
+TEST(FeatureExtractor, AnUpsideDownSensorSeesWhatAnUprightOneSees) {
+  constexpr int kFirings = 512;  // each in a column of its own
+  const auto upright = by_ray_in_the_yard(kUpright, kFirings);
+  const auto upside_down = by_ray_in_the_yard(kUpsideDown, kFirings);
+  const auto is_found = [](const Feature& f) { return f.x_m != 0.0F; };
+  EXPECT_GT(std::count_if(upright.begin(), upright.end(), is_found), 5000);
+  for (std::size_t ray = 0; ray < upright.size(); ++ray) {
+    const Feature &f = upright[ray], &g = upside_down[ray];
+    ASSERT_EQ(f.kind, g.kind) << "ring " << ray / kFirings << ", firing " << ray % kFirings;
+    EXPECT_LT((Eigen::Vector3f(f.x_m, f.y_m, f.z_m) - Eigen::Vector3f(g.x_m, g.y_m, g.z_m)).norm(),
+              1e-3F);
+    EXPECT_LT(
+        (Eigen::Vector3f(f.dx_m, f.dy_m, f.dz_m) - Eigen::Vector3f(g.dx_m, g.dy_m, g.dz_m)).norm(),
+        1e-3F);
+  }
+}
+
 TEST(FeatureExtractor, OnlyTheFirstScanTellsTheTilt) {
   FeatureExtractor extractor{OdometryConfig{}};
   ScanFeatures features;
   extractor.finish(fanned_scan(0.0), features);
-  extractor.finish(fanned_scan(0.0, false, 1200, 0.15), features);
+  extractor.finish(fanned_scan(0.0, false, 1200, kNoseDown), features);
   EXPECT_EQ(features.R_level_sensor.w(), 1.0);
 }
 

@@ -15,11 +15,15 @@ namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 
-/// A sensor of 16 beams in the yard, turned by `w` about a level axis.
-std::vector<Feature> seen_in_the_yard(const Eigen::Vector3d& w) {
+/// By a sensor of 16 beams.
+std::vector<Feature> seen_in(const test::Scene& scene, const Eigen::Quaterniond& R_world_sensor) {
   FeatureImage image(1024, {});
-  return image.build(test::still_scan_of(test::yard(), test::even_beams(16, -15.0, 15.0),
-                                         {so3_exp(w), Eigen::Vector3d::Zero()}));
+  return image.build(test::still_scan_of(scene, test::even_beams(16, -15.0, 15.0),
+                                         {R_world_sensor, Eigen::Vector3d::Zero()}));
+}
+
+std::vector<Feature> seen_in_the_yard(const Eigen::Quaterniond& R_world_sensor) {
+  return seen_in(test::yard(), R_world_sensor);
 }
 
 /// Ground features on a square of 20 x 20 m around the sensor, at that height (m).
@@ -47,14 +51,54 @@ Eigen::Quaterniond levelled(const std::vector<Feature>& features) {
 TEST(Levelling, FindsHowTheSensorIsTilted) {
   for (const Eigen::Vector3d& tilt_deg : std::vector<Eigen::Vector3d>{
            {0, 5, 0}, {0, 10, 0}, {0, -10, 0}, {12, 0, 0}, {-8, 15, 0}, {0, 25, 0}}) {
-    const Eigen::Vector3d w = tilt_deg * kDeg;
-    EXPECT_LT(levelled(seen_in_the_yard(w)).angularDistance(so3_exp(w)), 0.2 * kDeg)
+    const Eigen::Quaterniond tilt = so3_exp(tilt_deg * kDeg);
+    EXPECT_LT(levelled(seen_in_the_yard(tilt)).angularDistance(tilt), 0.2 * kDeg)
         << tilt_deg.transpose();
   }
 }
 
+// Then the ground is above it.
+TEST(Levelling, FindsThatTheSensorIsUpsideDown) {
+  for (const double tilt_rad : {0.0, 0.1, -0.2}) {
+    const Eigen::Quaterniond R_world_sensor =
+        so3_exp({0.0, tilt_rad, 0.0}) * so3_exp({std::numbers::pi, 0.0, 0.0});
+    const Eigen::Vector3d up = R_world_sensor.conjugate() * Eigen::Vector3d::UnitZ();
+    const Eigen::Quaterniond found = levelled(seen_in_the_yard(R_world_sensor));
+    EXPECT_LT((found * up - Eigen::Vector3d::UnitZ()).norm(), 0.2 * kDeg) << tilt_rad;
+  }
+}
+
+/// 40 m long, with a sensor of 16 beams in the middle.
+std::vector<Feature> seen_in_a_hall(double width_m, double to_floor_m, double to_ceiling_m) {
+  test::Scene hall;
+  hall.planes = {{{0.0, 0.0, 1.0}, -to_floor_m},     {{0.0, 0.0, -1.0}, -to_ceiling_m},
+                 {{0.0, -1.0, 0.0}, -0.5 * width_m}, {{0.0, 1.0, 0.0}, -0.5 * width_m},
+                 {{-1.0, 0.0, 0.0}, -20.0},          {{1.0, 0.0, 0.0}, -20.0}};
+  return seen_in(hall, Eigen::Quaterniond::Identity());
+}
+
+// Of a low ceiling it sees many times as much as of the floor.
+TEST(Levelling, LeavesAnUprightSensorInAHall) {
+  for (const double width_m : {8.0, 10.0, 16.0, 30.0}) {
+    EXPECT_EQ(levelled(seen_in_a_hall(width_m, 1.8, 0.5)).w(), 1.0) << width_m;
+    EXPECT_EQ(levelled(seen_in_a_hall(width_m, 2.5, 1.2)).w(), 1.0) << width_m;
+    EXPECT_EQ(levelled(seen_in_a_hall(width_m, 3.5, 0.5)).w(), 1.0) << width_m;
+  }
+}
+
+// Of whose floor it sees nothing.
+TEST(Levelling, LeavesAnUprightSensorUnderACeiling) {
+  const std::vector<Feature> few = field([](double, double) { return 1.0; });
+  EXPECT_EQ(levelled(few).w(), 1.0) << "441 flat surfaces are too few for the ground";
+  std::vector<Feature> above = few;
+  for (int k = 0; k < 2; ++k) above.insert(above.end(), few.begin(), few.end());
+  EXPECT_NE(levelled(above).w(), 1.0);
+  for (Feature& f : above) f.y_m *= 0.3F;  // 6 m wide, as in a room
+  EXPECT_EQ(levelled(above).w(), 1.0);
+}
+
 TEST(Levelling, LeavesASensorThatIsHardlyTilted) {
-  EXPECT_EQ(levelled(seen_in_the_yard({0.0, 2.0 * kDeg, 0.0})).w(), 1.0);
+  EXPECT_EQ(levelled(seen_in_the_yard(so3_exp({0.0, 2.0 * kDeg, 0.0}))).w(), 1.0);
 }
 
 // Parked cars and tables are flat as well.
@@ -89,7 +133,7 @@ TEST(Levelling, LeavesASensorThatSeesAStrip) {
 }
 
 TEST(Levelling, LeavesASensorThatSeesNoGround) {
-  std::vector<Feature> walls = seen_in_the_yard({0.0, 10.0 * kDeg, 0.0});
+  std::vector<Feature> walls = seen_in_the_yard(so3_exp({0.0, 10.0 * kDeg, 0.0}));
   for (Feature& f : walls) f.kind = FeatureKind::structure;
   EXPECT_EQ(levelled(walls).w(), 1.0);
 }

@@ -21,7 +21,7 @@ class TrackerPhase : public testing::Test {
   }
   Estimate take(const Scan& scan) {
     std::vector<Feature>& features = image_.build(scan);
-    Estimate estimate = tracker_.align(scan, features, {});
+    Estimate estimate = tracker_.align(scan, scan.beams, features, {});
     tracker_.update_map(features, {});
     return estimate;
   }
@@ -165,7 +165,7 @@ TEST_F(TrackerPhase, BeginsAnotherSessionAfterAFragment) {
       test::yard(), test::even_beams(16, -15.0, 15.0), 900, [](double) { return Pose{}; }, 0);
   part.returns.resize(part.returns.size() / 12);
   std::vector<Feature> features = image_.build(part);
-  tracker_.align(part, features, {});
+  tracker_.align(part, part.beams, features, {});
   tracker_.update_map(features, {});
   const Estimate e = take(1);
   EXPECT_EQ(e.restarts, 1U) << "how the sensor moved since the fragment is not known";

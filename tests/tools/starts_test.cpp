@@ -29,6 +29,7 @@ struct Drive {
   std::uint64_t seed = 3;
   bool start_in_motion = true;
   double tilt_deg = 0.0;  ///< nose down
+  double roll_deg = 0.0;
 };
 std::ostream& operator<<(std::ostream& out, const Drive& drive) { return out << drive.name; }
 
@@ -41,6 +42,7 @@ Recording recording_of(const Drive& drive) {
   options.motion.speed_mps = drive.speed_mps;
   options.motion.start_in_motion = drive.start_in_motion;
   options.motion.tilt_deg = drive.tilt_deg;
+  options.motion.roll_deg = drive.roll_deg;
   options.motion.duration_s = 12.0;
   return test::simulated(options);
 }
@@ -125,13 +127,14 @@ TEST(HillStarts, AMapBegunUnderAFalseMotionIsBegunAgain) {
 }
 
 /// At 3 m/s across a field, from rest.
-void expect_followed_across_a_field(std::uint64_t seed, double tilt_deg) {
+void expect_followed_across_a_field(std::uint64_t seed, double tilt_deg, double roll_deg = 0.0) {
   const Recording field = recording_of({.name = "field_from_rest",
                                         .world = "field",
                                         .speed_mps = 3.0,
                                         .seed = seed,
                                         .start_in_motion = false,
-                                        .tilt_deg = tilt_deg});
+                                        .tilt_deg = tilt_deg,
+                                        .roll_deg = roll_deg});
   const Outcome outcome = start_at(field, 0, field.scans.size());
   EXPECT_LT(outcome.squared_error, 6.0 * 4.0) << "seed " << seed;
   EXPECT_LT(outcome.last_m, 1.0) << "seed " << seed << ", 25 m on";
@@ -148,6 +151,13 @@ TEST(FieldStarts, AVehicleThatSetsOffOnBareGroundIsFollowed) {
 // left out: it is `degraded` nearly throughout, and ends 1.4 m off.
 TEST(FieldStarts, ATiltedSensorIsFollowedAcrossBareGround) {
   for (const std::uint64_t seed : {9811U, 9812U, 9814U}) expect_followed_across_a_field(seed, 10.0);
+}
+
+// When its scans were not turned over, it was never `tracking`, and came out elsewhere altogether.
+TEST(FieldStarts, AnUpsideDownSensorIsFollowedAcrossBareGround) {
+  for (const std::uint64_t seed : {9878U, 9879U, 9880U}) {
+    expect_followed_across_a_field(seed, 0.0, 180.0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(
