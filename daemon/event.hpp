@@ -30,6 +30,7 @@ enum class Event : std::uint8_t {
   calibration_read,
   calibration_stored,
   calibration_not_stored,
+  sensor_levelled,
   beams_resumed,
   beams_file_failed,
   client_refused,
@@ -41,7 +42,7 @@ enum class Event : std::uint8_t {
   config_taken,
   config_refused,
 };
-inline constexpr std::size_t kEventCount = 29;
+inline constexpr std::size_t kEventCount = 30;
 
 /// As syslog(3) numbers them.
 enum class Severity : std::uint8_t { error = 3, warning = 4, info = 6 };
@@ -72,6 +73,7 @@ constexpr EventDescription describe(Event event) {
       {"2fc53a9ad5e645adab6448bf6d37d2db", Severity::info},     // calibration_read
       {"34e8043eec1c4cd6ab32db8a8913d1d8", Severity::info},     // calibration_stored
       {"246a966f7fea4292a6f9641cf1a97c69", Severity::warning},  // calibration_not_stored
+      {"b6c2ca53cd9b444890d32a00171e085b", Severity::info},     // sensor_levelled
       {"73abed68f8fe4bbcb013ce7eabb89b8e", Severity::info},     // beams_resumed
       {"673f0769078b4e7b87a26fb6dab9a00f", Severity::warning},  // beams_file_failed
       {"9c915a99f8ab4c80ab1ddd9243fd7549", Severity::warning},  // client_refused

@@ -85,6 +85,10 @@ void write_sensor(JsonWriter& out, const SensorStatus& sensor) {
   out.end_object();
 }
 
+void write_tilt(JsonWriter& out, const Health& h) {
+  if (h.tilt_deg > 0.0) out.number("tilt_deg", h.tilt_deg, 1);
+}
+
 void write_beams(JsonWriter& out, const Health& h) {
   if (!h.has_beams) return;
   out.begin_object("beams");
@@ -114,6 +118,7 @@ void write_state(JsonWriter& out, const Health& h, const Room& room) {
   out.number("sensor_silent_s", h.sensor_silent_s, 1);
   if (room.sensor) {
     write_sensor(out, h.sensor);
+    write_tilt(out, h);
     write_beams(out, h);
   }
 }

@@ -63,6 +63,7 @@ struct Health {
   SourceCounts source;
   std::uint64_t scans_processed = 0, scans_dropped = 0;
   std::uint64_t map_refused = 0;                              ///< Estimate::map_refused_count
+  double tilt_deg = 0.0;                                      ///< Odometry::tilt_rad()
   bool has_beams = false;                                     ///< errors of the beams are estimated
   double beams_elevation_deg = 0.0, beams_azimuth_deg = 0.0;  ///< largest correction
   std::uint64_t poses_sent = 0, poses_not_sent = 0, send_errors = 0;

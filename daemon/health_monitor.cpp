@@ -74,6 +74,7 @@ void HealthMonitor::add(const PoseReport& report, double latency_ms) {
   tracking_ = report.estimate.status;
   last_pose_ns_ = monotonic_ns();
   clock_ = report.clock;
+  tilt_rad_ = report.tilt_rad;
   const std::uint64_t refused = report.estimate.map_refused_count;
   // After a reset another odometry counts, from 0.
   map_refused_ += refused >= map_refused_last_ ? refused - map_refused_last_ : refused;
@@ -161,6 +162,7 @@ void HealthMonitor::collect(const PublisherCounts& published, Health& h) {
   h.instance = instance_;
   h.tracking = tracking_;
   h.clock = clock_;
+  h.tilt_deg = tilt_rad_ * kDegreesPerRadian;
   collect_time(now_ns, h);
   collect_counts(published, h);
   collect_timing(h);

@@ -53,6 +53,7 @@ class HealthMonitor {
   std::array<RecentValues, kStageCount> stages_ms_;
   TrackingStatus tracking_ = TrackingStatus::initializing;
   ClockSource clock_ = ClockSource::host;
+  double tilt_rad_ = 0.0;
   std::int64_t last_pose_ns_ = 0;  // 0: none yet
   std::uint64_t reports_ = 0;
   std::uint64_t faults_when_warm_ = 0, faults_now_ = 0, major_faults_at_start_ = 0;

@@ -35,6 +35,7 @@ struct PoseReport {
   PacketCounts packets;
   ClockSource clock = ClockSource::host;
   bool scan_complete = true;
+  double tilt_rad = 0.0;                  ///< Odometry::tilt_rad()
   std::uint64_t resets = 0;               ///< odometries begun before this one
   std::uint64_t worker_minor_faults = 0;  ///< page faults of the thread since its start
 };

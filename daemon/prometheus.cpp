@@ -141,6 +141,7 @@ void write_scans(Metrics& m, const Health& h) {
   m.counter("lilo_scans_complete_total", "Whole revolutions.", h.driver.scans_complete);
   m.counter("lilo_scans_partial_total", "Revolutions with a hole.", h.driver.scans_partial);
   m.counter("lilo_scans_dropped_total", "Revolutions given up to keep up.", h.scans_dropped);
+  m.gauge("lilo_tilt_degrees", "Angle by which scans are levelled; 0: they are not.", h.tilt_deg);
   if (h.has_beams) {
     m.gauge("lilo_beams_elevation_degrees", "Largest correction of a ring's elevation.",
             h.beams_elevation_deg);

@@ -94,6 +94,7 @@ void Story::session_replaced(const std::string& before, const std::string& now, 
 
 void Story::second(const Health& h) {
   tell_sensor(h);
+  tell_tilt(h);
   tell_wrong_sensor(h);
   tell_second_sensor(h);
   tell_calibration(h.sensor);
@@ -113,6 +114,17 @@ void Story::tell_sensor(const Health& h) {
                                           to_string(now.model), dotted(now.sensor_ipv4), now.rpm,
                                           to_string(now.return_mode), to_string(now.clock)));
   if (told) sensor_ = now;
+}
+
+// Once: a reset keeps the axes.
+void Story::tell_tilt(const Health& h) {
+  if (h.tilt_deg == tilt_deg_) return;
+  if (log_event(Event::sensor_levelled,
+                fmt::format("sensor: {}, its z axis is {:.1f} deg off the normal of the ground in "
+                            "its first scan; scans are levelled",
+                            h.tilt_deg > 90.0 ? "upside down" : "tilted", h.tilt_deg))) {
+    tilt_deg_ = h.tilt_deg;
+  }
 }
 
 // Once while they come, and again when they are of yet another model.

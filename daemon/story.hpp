@@ -39,6 +39,7 @@ class Story {
 
   void note_relocalization(const PoseReport& report);
   void tell_sensor(const Health& h);
+  void tell_tilt(const Health& h);
   void tell_wrong_sensor(const Health& h);
   void tell_second_sensor(const Health& h);
   void tell_flow(const Health& h);
@@ -60,6 +61,7 @@ class Story {
 
   // What was told last, and since when it has been so.
   SensorStatus sensor_;
+  double tilt_deg_ = 0.0;
   RefusedSensor wrong_sensor_;  // none: nothing of it was told
   bool second_sensor_ = false;
   Flow flow_ = Flow::all;

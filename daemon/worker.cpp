@@ -121,6 +121,7 @@ void Worker::report(const ScanSlot& slot, const Estimate& estimate) {
              .packets = slot.scan.packets,
              .clock = slot.scan.clock,
              .scan_complete = slot.scan.complete,
+             .tilt_rad = odometry_->tilt_rad(),
              .resets = resets_,
              .worker_minor_faults = minor_faults()};
   report->stage_ns[static_cast<std::size_t>(Stage::project)] += slot.extraction_ns;

@@ -57,6 +57,7 @@ TEST(Health, NeverOutgrowsTheDatagram) {
   h.sensor.refused = {.packets = huge, .product_id = 0x23};
   h.instance = std::string(32, 'x');
   h.map_refused = h.clock_steps = huge;
+  h.tilt_deg = 179.9;
   h.scans_processed = h.scans_dropped = h.poses_sent = h.poses_not_sent = h.send_errors = huge;
   h.worker_minor_faults = h.major_faults = huge;
   h.latency_ms = h.processing_ms = {12345.67, 12345.67, 12345.67};
@@ -142,6 +143,19 @@ TEST(Health, SaysThatTheMapIsFullAndThatSocketsFail) {
                            "lilo_complaint{instance=\"front\",kind=\"packets_lost\"} 0"}) {
     EXPECT_NE(text.find('\n' + std::string(line) + '\n'), std::string::npos) << line;
   }
+}
+
+TEST(Health, SaysByHowMuchScansAreLevelled) {
+  Health h = a_health();
+  JsonWriter out;
+  EXPECT_FALSE(
+      json::parse(write_health("0123456789abcdef", h, out))["health"].contains("tilt_deg"));
+  h.tilt_deg = 12.27;
+  EXPECT_EQ(json::parse(write_health("0123456789abcdef", h, out))["health"]["tilt_deg"], 12.3);
+  std::string text;
+  write_prometheus("0123456789abcdef", h, text);
+  EXPECT_NE(text.find("\nlilo_tilt_degrees{instance=\"front\"} 12.27\n"), std::string::npos)
+      << text;
 }
 
 TEST(Health, SaysByHowMuchTheBeamsAreCorrected) {

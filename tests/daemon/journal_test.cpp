@@ -118,6 +118,16 @@ TEST_F(StoryTest, TellsOfTheSensorOnceAndOfItsChanges) {
   EXPECT_NE(second().find("clock gps"), std::string::npos);
 }
 
+TEST_F(StoryTest, TellsOnceThatScansAreLevelled) {
+  second();
+  health_.tilt_deg = 168.64;
+  const std::string told = second();
+  EXPECT_NE(told.find("sensor: upside down, its z axis is 168.6 deg off"), std::string::npos)
+      << told;
+  EXPECT_NE(told.find(id(Event::sensor_levelled)), std::string::npos) << told;
+  EXPECT_EQ(second(), "");
+}
+
 TEST_F(StoryTest, TellsWorseAtOnceAndBetterWhenItLasts) {
   second();
   poses(10, TrackingStatus::tracking);

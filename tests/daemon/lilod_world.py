@@ -55,16 +55,17 @@ class Vlp16:
         "fog": lambda a: None,        # no return at all
     }
     NOISES = 3
-    _blocks = {}  # (scene, noise) -> blocks by tenth of a degree
+    _blocks = {}  # (scene, noise, upside_down) -> blocks by tenth of a degree
 
     def __init__(self, port, address="127.0.0.1", source_port=0, to="127.0.0.1", product=0x22,
-                 hdl64e=False, scenes=("room",)):
+                 hdl64e=False, scenes=("room",), upside_down=False):
         """With another product byte or the block flags of an HDL-64E it says it is another model.
         `scenes`: what it may have to show, the first at once."""
         self.port, self.product, self.to, self.hdl64e = port, product, to, hdl64e
         self.frozen_azimuth = self.frozen_stamp = False
+        self.upside_down = upside_down
         for scene in scenes:
-            self._prepare(scene)
+            self._prepare(scene, upside_down)
         self.show(scenes[0])
         self.loss = 0.0
         self.sent = 0
@@ -95,19 +96,19 @@ class Vlp16:
         self.scene = scene
 
     @classmethod
-    def _prepare(cls, scene):
+    def _prepare(cls, scene, upside_down):
         wall, rng = cls.SCENES[scene], random.Random(1)
         for noise in range(cls.NOISES):
-            if (scene, noise) not in cls._blocks:
-                cls._blocks[scene, noise] = [cls._block(wall(math.radians(tenth / 10)), rng)
-                                             for tenth in range(3600)]
+            if (scene, noise, upside_down) not in cls._blocks:
+                cls._blocks[scene, noise, upside_down] = [
+                    cls._block(wall(math.radians(tenth / 10)), rng, upside_down) for tenth in range(3600)]
 
     @classmethod
-    def _block(cls, wall, rng):
+    def _block(cls, wall, rng, upside_down):
         """The 32 returns of a block."""
         returns = b""
         for elevation in cls.ELEVATIONS:
-            e = math.radians(elevation)
+            e = math.radians(-elevation if upside_down else elevation)
             reach = 0.0 if wall is None else wall / math.cos(e)
             if e < 0:
                 reach = min(reach, 1.8 / math.sin(-e))
@@ -117,7 +118,7 @@ class Vlp16:
 
     def packet(self, number):
         time_s = number * self.PACKET_S
-        blocks, out = self._blocks[self.scene, int(time_s * 10) % self.NOISES], []
+        blocks, out = self._blocks[self.scene, int(time_s * 10) % self.NOISES, self.upside_down], []
         # Every packet begins at half a step of 0.01 degrees: one that began below 0.06 would have 437
         # steps from its first block to its last instead of 438, and tell 599 rpm.
         first = 0.5 if self.frozen_azimuth else int(time_s * 10 % 1 * 36000) + 0.5

@@ -32,6 +32,15 @@ def silence_and_return():
 
 
 @attack
+def sensor_upside_down():
+    with Case() as case:
+        case.sensor(upside_down=True).on()
+        case.health("tracking")
+        expect(abs(case.lilod.health["tilt_deg"] - 180.0) < 0.5, "its ground is above")
+        case.journal("sensor_levelled", "sensor: upside down")
+
+
+@attack
 def frozen_azimuth():
     with Case() as case:
         sensor = case.sensor()

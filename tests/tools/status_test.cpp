@@ -75,6 +75,13 @@ TEST(Status, SaysWhatTheDaemonSays) {
   EXPECT_EQ(row(report, "Sensor"), "stamps by GPS");
 }
 
+TEST(Status, SaysThatScansAreLevelled) {
+  StatusReport report{"robot:9871", "lilod 0.1.0", health(), pose()};
+  EXPECT_EQ(row(report, "Tilt"), "no such row");
+  report.health["health"]["tilt_deg"] = 12.34;
+  EXPECT_EQ(row(report, "Tilt"), "12.3 deg against the ground of the first scan, levelled");
+}
+
 TEST(Status, OnlyTrackingWithoutComplaintsIsGood) {
   EXPECT_FALSE(is_good({"", "", health("lost"), pose()}));
   EXPECT_FALSE(is_good({"", "", health("initializing"), nullptr}));

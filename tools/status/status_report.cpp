@@ -64,6 +64,12 @@ StatusRow sensor_row(const json& health) {
   return {"Sensor", text, silent ? Colour::bad : Colour::none};
 }
 
+void add_tilt_row(const json& health, std::vector<StatusRow>& rows) {
+  if (!health.contains("tilt_deg")) return;
+  rows.push_back({"Tilt", fmt::format("{:.1f} deg against the ground of the first scan, levelled",
+                                      health.value("tilt_deg", 0.0))});
+}
+
 void add_beams_row(const json& health, std::vector<StatusRow>& rows) {
   if (!health.contains("beams")) return;
   const json& beams = health["beams"];
@@ -173,6 +179,7 @@ std::vector<StatusRow> status_rows(const StatusReport& report) {
   rows.push_back(complaints_row(health));
   rows.push_back({"Session", report.health.value("session", "")});
   rows.push_back(sensor_row(health));
+  add_tilt_row(health, rows);
   add_beams_row(health, rows);
   rows.push_back(rate_row(health));
   add_pose_rows(report, rows);
