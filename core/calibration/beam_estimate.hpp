@@ -11,8 +11,8 @@ namespace lilo {
 
 /// What is known of the errors of a sensor's beams: to be kept from one run to the next. Of a
 /// levelled sensor azimuths are about the vertical and elevations are towards it
-/// (core::BeamCorrection), so that the estimate holds for that tilt. The order of the
-/// rings and all signs are the sensor's, also if it is upside down.
+/// (core::BeamCorrection), so that the estimate holds for that tilt. The order of the rings and all
+/// signs are the sensor's, also if it is upside down.
 /// Trivially copyable, so that threads can share it.
 struct BeamEstimate {
   int ring_count = 0;                             ///< 0: nothing is known

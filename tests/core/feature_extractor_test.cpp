@@ -188,6 +188,7 @@ TEST_F(InParts, WithPacketsThatWereOvertaken) {
 /// ahead. Upright its rings are closer together below.
 std::vector<Feature> by_ray_in_the_yard(const Eigen::Quaterniond& R_world_sensor, int firings) {
   constexpr int kRings = 16;
+  constexpr float kTurn_rad = 2.0F * std::numbers::pi_v<float>;
   BeamTable beams = test::even_beams(kRings, -16.0, 16.0);
   for (float& rad : std::span(beams.elevation_rad).first(kRings)) rad += 0.7F * rad * rad - 0.06F;
   const ScanFeatures found = of_whole(
@@ -196,7 +197,7 @@ std::vector<Feature> by_ray_in_the_yard(const Eigen::Quaterniond& R_world_sensor
       }));
   std::vector<Feature> by_ray(static_cast<std::size_t>(kRings * firings));
   for (const Feature& f : found.all) {
-    const float turns = std::atan2(f.y_m, f.x_m) / (2.0F * std::numbers::pi_v<float>)+1.0F;
+    const float turns = std::atan2(f.y_m, f.x_m) / kTurn_rad + 1.0F;
     const auto firing = std::lround(turns * static_cast<float>(firings)) % firings;
     by_ray[static_cast<std::size_t>(int{f.ring} * std::ptrdiff_t{firings} + firing)] = f;
   }

@@ -170,8 +170,9 @@ std::string name_of(const testing::TestParamInfo<Eigen::Quaterniond>& mount) {
   constexpr std::array kNames = {"NoseDown", "UpsideDown", "UpsideDownAndNoseDown"};
   return kNames.at(mount.index);
 }
-INSTANTIATE_TEST_SUITE_P(Mounts, MountedSensor,
-                         testing::Values(kNoseDown, kUpsideDown, kNoseDown* kUpsideDown), name_of);
+const Eigen::Quaterniond kBoth = kNoseDown * kUpsideDown;
+INSTANTIATE_TEST_SUITE_P(Mounts, MountedSensor, testing::Values(kNoseDown, kUpsideDown, kBoth),
+                         name_of);
 
 }  // namespace
 }  // namespace lilo

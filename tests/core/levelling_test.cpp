@@ -3,6 +3,7 @@
 
 #include "core/image/feature_image.hpp"
 #include "tests/core/analytic_scene.hpp"
+#include "tests/core/mounts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -60,8 +61,7 @@ TEST(Levelling, FindsHowTheSensorIsTilted) {
 // Then the ground is above it.
 TEST(Levelling, FindsThatTheSensorIsUpsideDown) {
   for (const double tilt_rad : {0.0, 0.1, -0.2}) {
-    const Eigen::Quaterniond R_world_sensor =
-        so3_exp({0.0, tilt_rad, 0.0}) * so3_exp({std::numbers::pi, 0.0, 0.0});
+    const Eigen::Quaterniond R_world_sensor = so3_exp({0.0, tilt_rad, 0.0}) * test::kUpsideDown;
     const Eigen::Vector3d up = R_world_sensor.conjugate() * Eigen::Vector3d::UnitZ();
     const Eigen::Quaterniond found = levelled(seen_in_the_yard(R_world_sensor));
     EXPECT_LT((found * up - Eigen::Vector3d::UnitZ()).norm(), 0.2 * kDeg) << tilt_rad;

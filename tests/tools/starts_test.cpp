@@ -153,7 +153,7 @@ TEST(FieldStarts, ATiltedSensorIsFollowedAcrossBareGround) {
   for (const std::uint64_t seed : {9811U, 9812U, 9814U}) expect_followed_across_a_field(seed, 10.0);
 }
 
-// When its scans were not turned over, it was never `tracking`, and came out elsewhere altogether.
+// To an upside-down sensor the ground is above, where flat surfaces count as canopy.
 TEST(FieldStarts, AnUpsideDownSensorIsFollowedAcrossBareGround) {
   for (const std::uint64_t seed : {9878U, 9879U, 9880U}) {
     expect_followed_across_a_field(seed, 0.0, 180.0);
