@@ -49,12 +49,19 @@ class SimCommand : public testing::Test {
 TEST_F(SimCommand, RefusesNumbersThatAreNone) {
   for (const char* option : {"--duration-s", "--speed-mps", "--rpm", "--loss", "--tilt-deg",
                              "--roll-deg", "--sensor-height-m", "--range-sigma-m", "--host-step-s",
-                             "--hour-wrap-at-s", "--turn-rate-dps"}) {
+                             "--hour-wrap-at-s", "--turn-rate-dps", "--robot-box"}) {
     for (const char* value : {"nan", "-nan", "inf", "-inf", "1e999"}) {
       const std::string said = complaint(std::string(option) + " " + value);
       EXPECT_NE(said.find(std::string(option) + ": expected a number from "), std::string::npos)
           << option << " " << value << ": " << said;
     }
+  }
+  EXPECT_FALSE(fs::exists(folder_));
+}
+
+TEST_F(SimCommand, RefusesABoxWithoutSixNumbers) {
+  for (const char* box : {"-2,-1,-1,1,-1", "-2,-1,-1,1,-1,1,1"}) {
+    EXPECT_NE(complaint(std::string("--robot-box=") + box).find("--robot-box"), std::string::npos);
   }
   EXPECT_FALSE(fs::exists(folder_));
 }

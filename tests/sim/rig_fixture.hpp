@@ -43,7 +43,7 @@ class TestRig {
   Rotor rotor;
   SensorClock clock;
   Scene scene;
-  Laser laser{scene, options, 11};
+  Laser laser{scene, path, options, 11};
 };
 
 /// Perfect echoes: what comes back is geometry alone.

@@ -177,6 +177,27 @@ TEST(Vlp16Encoder, DualPairsShareTheirAzimuthAndOrder) {
   EXPECT_GT(same, 5000);
 }
 
+// The face of a box 1 m behind, seen squarely by the rays at 180 degrees, 20 m above the ground.
+TEST(Vlp16Encoder, APartOfTheRobotMovesAndTurnsWithTheSensor) {
+  SensorOptions options = noiseless();
+  options.robot = {{-1.5, -1.0, -0.5, 0.5, -1.0, 1.0}};
+  const MotionOptions turning{.speed_mps = 10.0, .start_in_motion = true, .turn_rate_dps = 90.0};
+  TestRig rig(options, turning, kStraight, [](Scene&) {});
+  Vlp16Encoder encoder(rig.rig());
+  int seen = 0;
+  for (int n = 0; n < 750; ++n) {
+    const Packet packet = encoder.encode(n * encoder.period_ns());
+    for (std::size_t block = 0; block < 12; ++block) {
+      const double azimuth_deg = u16_at(packet, block * 100 + 2) * 0.01;
+      if (std::abs(azimuth_deg - 180.0) > 0.3) continue;
+      ++seen;
+      EXPECT_NEAR(u16_at(packet, block * 100 + 4) * 0.002,
+                  1.0 / std::cos(15.0 * std::numbers::pi / 180.0), 0.003);
+    }
+  }
+  EXPECT_GT(seen, 10);
+}
+
 TEST(Vlp16Encoder, BlindSectorIsEmptyAndNothingElseIs) {
   SensorOptions options = noiseless();
   options.blind_from_deg = 350.0;

@@ -45,10 +45,38 @@ double reflectivity(Material material) {
   return 0.3;
 }
 
+Mesh mesh_of(const std::vector<RobotBox>& robot) {
+  Mesh mesh;
+  for (const RobotBox& box : robot) {
+    add_box(mesh, {box[0], box[2], box[4]}, {box[1], box[3], box[5]}, Material::paint);
+  }
+  return mesh;
+}
+
 }  // namespace
 
+Laser::Laser(const Scene& scene, const SensorPath& path, const SensorOptions& options,
+             std::uint64_t seed)
+    : scene_(scene),
+      path_(path),
+      robot_(mesh_of(options.robot)),
+      options_(options),
+      random_(seed, 50) {}
+
+void Laser::meet_robot(const Vec3& origin, const Vec3& direction, double time_s, Hit& hit) const {
+  if (robot_.size() == 0) return;
+  const Placement pose = path_.at(time_s);
+  const Eigen::Matrix3d back = pose.rotation.transpose();
+  Hit nearer{hit.range_m};
+  robot_.cast(Ray(back * (origin - pose.translation_m), back * direction), nearer);
+  if (!nearer.found) return;
+  hit = nearer;
+  hit.normal = pose.rotation * nearer.normal;
+}
+
 Laser::Glint Laser::cast(const Vec3& origin, const Vec3& direction, double time_s) const {
-  const Hit hit = scene_.cast(origin, direction, time_s, options_.max_range_m);
+  Hit hit = scene_.cast(origin, direction, time_s, options_.max_range_m);
+  meet_robot(origin, direction, time_s, hit);
   if (!hit.found || hit.range_m < options_.min_range_m) return {};
   double cosine = std::abs(hit.normal.dot(direction));
   // Glass mirrors: what is not met nearly at a right angle goes elsewhere.

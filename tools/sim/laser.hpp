@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "tools/sim/bvh.hpp"
+#include "tools/sim/motion.hpp"
 #include "tools/sim/options.hpp"
 #include "tools/sim/random.hpp"
 #include "tools/sim/scene.hpp"
@@ -25,8 +27,9 @@ struct Shot {
 /// give two echoes.
 class Laser {
  public:
-  Laser(const Scene& scene, const SensorOptions& options, std::uint64_t seed)
-      : scene_(scene), options_(options), random_(seed, 50) {}
+  /// `path`: of the sensor; the parts of the robot move with it.
+  Laser(const Scene& scene, const SensorPath& path, const SensorOptions& options,
+        std::uint64_t seed);
 
   /// Shots are random numbers in the order of the calls. `origin` and `direction` in the world.
   Shot fire(const Vec3& origin, const Vec3& direction, double time_s);
@@ -39,11 +42,14 @@ class Laser {
   struct Glint {
     double range_m = 0.0, power = 0.0, brightness = 0.0;
   };
+  void meet_robot(const Vec3& origin, const Vec3& direction, double time_s, Hit& hit) const;
   [[nodiscard]] Glint cast(const Vec3& origin, const Vec3& direction, double time_s) const;
   [[nodiscard]] Echo echo_of(const Glint& glint);
   Shot fire_wide(const Vec3& origin, const Vec3& direction, double time_s);
 
   const Scene& scene_;
+  const SensorPath& path_;
+  SolidMesh robot_;  // in the sensor's axes
   SensorOptions options_;
   Random random_;
 };

@@ -74,6 +74,7 @@ void write_meta(const std::string& folder, const SimOptions& options, const SimS
   meta["dual"] = options.sensor.returns == ReturnMode::dual;
   meta["two_point"] = options.sensor.two_point;
   meta["hdl_azimuth"] = options.sensor.turning_block ? "firing" : "block";
+  meta["robot_boxes_m"] = options.sensor.robot;
   meta["tilt_deg"] = options.motion.tilt_deg;
   meta["roll_deg"] = options.motion.roll_deg;
   meta["shake_hz"] = options.motion.shake_hz;

@@ -3,14 +3,20 @@
 
 #include "tools/sim/motion.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace lilo::sim {
 
 enum class Sensor : std::uint8_t { vlp16, vlp16_hires, hdl64_s2, hdl64_s3, vlp32c, hdl32e, vls128 };
 enum class ReturnMode : std::uint8_t { strongest, last, dual };
+
+/// A part of the robot that moves with the sensor and is in its view: the corners of a box in the
+/// sensor's axes, x and y and z from and to (m).
+using RobotBox = std::array<double, 6>;
 
 struct SensorOptions {
   Sensor sensor = Sensor::vlp16;
@@ -30,6 +36,7 @@ struct SensorOptions {
   bool two_point = false;  ///< HDL-64E: near ranges need the two-point distance correction
   double blind_from_deg = 0.0,
          blind_to_deg = 0.0;  ///< clockwise sector without returns; empty: none
+  std::vector<RobotBox> robot;
 };
 
 struct FaultOptions {

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <tuple>
 #include <vector>
 
 namespace lilo::sim {
@@ -114,6 +115,17 @@ void add_sensor(CLI::App& command, SensorOptions& sensor) {
   group.number("--blind-to-deg", sensor.blind_to_deg, 0.0, 720.0, "to this one");
 }
 
+void add_robot(CLI::App& command, SimArguments& arguments) {
+  command
+      .add_option("--robot-box", arguments.robot_boxes_m,
+                  "A part of the robot in view: x, y, z from and to, in the sensor's axes; any "
+                  "number of them")
+      ->delimiter(',')
+      ->check(within(-20.0, 20.0))
+      ->type_name("X,X,Y,Y,Z,Z")
+      ->group("Sensor");
+}
+
 void add_clocks(CLI::App& command, SimArguments& arguments) {
   SensorOptions& sensor = arguments.options.sensor;
   FaultOptions& faults = arguments.options.faults;
@@ -155,6 +167,17 @@ void add_faults(CLI::App& command, SimOptions& options) {
   group.number("--rpm-after", options.sensor.rpm_after, 0.0, 1200.0, "to this; 0 stops it");
 }
 
+std::vector<RobotBox> boxes_of(const std::vector<double>& numbers) {
+  constexpr std::size_t kEach = std::tuple_size_v<RobotBox>;
+  if (numbers.size() % kEach != 0) {
+    throw CLI::ValidationError(
+        "--robot-box", fmt::format("expected {} numbers a box, found {}", kEach, numbers.size()));
+  }
+  std::vector<RobotBox> boxes(numbers.size() / kEach);
+  for (std::size_t k = 0; k < numbers.size(); ++k) boxes[k / kEach][k % kEach] = numbers[k];
+  return boxes;
+}
+
 /// Seconds with up to nine decimals, without the rounding of a double.
 std::int64_t parse_utc_ns(const std::string& text) {
   const std::size_t point = text.find('.');
@@ -176,6 +199,7 @@ void add_options(CLI::App& command, SimArguments& arguments) {
       ->type_name("");
   add_motion(command, arguments.options);
   add_sensor(command, arguments.options.sensor);
+  add_robot(command, arguments);
   add_clocks(command, arguments);
   add_faults(command, arguments.options);
   command.add_flag(
@@ -200,6 +224,7 @@ void settle(const CLI::App& command, SimArguments& arguments) {
   SimOptions& options = arguments.options;
   SensorOptions& sensor = options.sensor;
   const auto given = [&](const char* name) { return command.count(name) > 0; };
+  sensor.robot = boxes_of(arguments.robot_boxes_m);
   for (const WorldInfo& world : known_worlds()) {
     if (world.name == options.world && !given("--speed-mps")) {
       options.motion.speed_mps = world.default_speed_mps;

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <string>
+#include <vector>
 
 namespace lilo::sim {
 
@@ -13,9 +14,10 @@ namespace lilo::sim {
 struct SimArguments {
   SimOptions options;
   std::string folder;
-  std::string start_utc;         ///< seconds, kept as text: a double rounds them
-  double hour_wrap_at_s = -1.0;  ///< negative: not asked for
-  bool force = false;            ///< whatever the folder holds
+  std::string start_utc;              ///< seconds, kept as text: a double rounds them
+  std::vector<double> robot_boxes_m;  ///< six a box
+  double hour_wrap_at_s = -1.0;       ///< negative: not asked for
+  bool force = false;                 ///< whatever the folder holds
   bool quiet = false;
 };
 

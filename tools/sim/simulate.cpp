@@ -136,7 +136,7 @@ SimSummary simulate(const SimOptions& options, const std::string& folder,
   std::filesystem::create_directories(folder);
   const Rotor rotor(options.sensor, options.seed);
   SensorClock clock = make_clock(options);
-  Laser laser(world.scene, options.sensor, options.seed);
+  Laser laser(world.scene, path, options.sensor, options.seed);
   const std::unique_ptr<Encoder> encoder =
       make_encoder(options, Rig{options.sensor, path, rotor, clock, laser}, folder);
   PcapWriter writer(folder + "/data.pcap", options.nanosecond_pcap);
