@@ -4,6 +4,7 @@
 #include "core/constants.hpp"
 #include "core/image/feature_image.hpp"
 #include "core/image/levelling.hpp"
+#include "core/image/self_filter.hpp"
 
 #include <optional>
 #include <span>
@@ -22,6 +23,7 @@ struct FeatureExtractor::Impl {
   bool idle;  // the profile has no use for features
   core::FeatureImage image;
   core::Levelling levelling{};
+  core::SelfFilter self_filter{};
   std::optional<Eigen::Quaterniond> R_level_sensor{};  // none until a scan tells it
   std::size_t taken = 0;                               // returns of the scan being followed
   bool invalidated = false;  // returns came in before some that were taken
@@ -75,6 +77,9 @@ void FeatureExtractor::finish(const Scan& scan, ScanFeatures& out) {
       impl_->taken = 0;
       found = &impl_->finish(scan);
     }
+  }
+  if (impl_->R_level_sensor) {
+    impl_->self_filter.filter(*found, impl_->image.too_near(), impl_->image.size());
   }
   std::swap(*found, out.all);
   out.R_level_sensor = impl_->axes();

@@ -18,7 +18,9 @@ namespace lilo {
 /// (core::Levelling), and is taken once more if it is. All scans from it on are in the level axes
 /// found, as long as the extractor lives, also if that scan did not show the ground. (A version
 /// that asked later scans too got worse in rooms.) Earlier ones are given no features: they have
-/// too few to be aligned. Not thread-safe; the one thread need not be the one that calls Odometry.
+/// too few to be aligned. Features of the robot itself are left out (core::SelfFilter). What it is
+/// follows from the scans that were finished before.
+/// Not thread-safe; the one thread need not be the one that calls Odometry.
 class FeatureExtractor {
  public:
   explicit FeatureExtractor(const OdometryConfig& config);

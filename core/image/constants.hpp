@@ -73,6 +73,29 @@ inline constexpr double kMostCeiling = 10.0;
 /// than a third as many flat surfaces below as in a ceiling. It was 0.2 to 1.7 m wide, and wider in
 /// 10 of them. The ground was 2.0 to 7.2 m wide above those upside-down sensors but one.
 inline constexpr double kWidestCeiling_m = 2.0;
+/// Metres: the robot itself is nearer. Range: 3 to 8.
+inline constexpr float kSelfRange_m = 5.0F;
+/// Metres by which the range of a pixel may differ that has one range: five times the noise of an
+/// HDL-64E.
+inline constexpr float kSteadyRange_m = 0.1F;
+/// Scans in which the robot keeps its ranges. A robot of which less is known is believed at once: a
+/// sensor that is switched on while it drives would be held in place meanwhile. Range: 10 to 100.
+inline constexpr int kSteadyScans = 30;
+/// Part of these scans, and part of a region's pixels: drops come in front of a robot, and its
+/// edges fall into one column or the next. Range: 0.6 to 0.9, and 0.8 to 0.9.
+inline constexpr double kSteadyTime = 0.8, kSteadyPart = 0.9;
+/// Part of the other structure that must be unsteady, if a steady region is to be taken for the
+/// robot. Where less is, the sensor is stationary: vehicles beside it were the robot then, and when
+/// they set off together more often took the odometry along (`Jam.*`). Range: 0.05 to 0.1.
+inline constexpr double kLeastUnsteady = 0.1;
+/// Part of the image that may be the robot: half of it, if the sensor is mounted on its front.
+/// Range: 0.33 to 0.6.
+inline constexpr double kMostSelfPart = 0.6;
+/// Metres, and part of the range: neighbours in the image that are less far apart are on one
+/// surface.
+inline constexpr float kSurfaceGap_m = 0.2F, kSurfaceGapPart = 0.1F;
+/// Metres: ground at neighbouring rings is one surface if it differs by less in height.
+inline constexpr float kGroundStep_m = 0.25F;
 /// Pixels of an image at most, and so features. Range, with 64 rings: 512 to 1024 columns.
 inline constexpr int kMostPixels = 64 * 576;
 /// Metres: voxels of ground and of structure in the first scan, before they adapt.

@@ -56,10 +56,11 @@ void FeatureImage::begin(const BeamTable& beams, const Eigen::Quaterniond& R_lev
     gap_rad_[static_cast<std::size_t>(ring)] = gap_rad(beams, ring);
   }
   filled_.assign(static_cast<std::size_t>(columns_), Filled{});
-  for (std::vector<Feature>* features : {&features_, &last_features_}) {
+  for (std::vector<Feature>* features : {&features_, &last_features_, &too_near_}) {
     if (features->capacity() < size) features->resize(size);  // touches it all
     features->clear();
   }
+  noted_.assign(static_cast<std::size_t>(columns_), Filled{});
   sweep_ = {};
   near_structure_ = {};
 }

@@ -22,6 +22,11 @@ struct RangeLimits {
   double min_m = 1.0, max_m = 100.0;
 };
 
+struct ImageSize {
+  int columns = 0, rings = 0;
+  bool operator==(const ImageSize&) const = default;
+};
+
 /// The spherical range image of a scan. Reused from scan to scan: no allocation after the first.
 /// Columns are contiguous, because a firing fills a column and neighbouring rings are compared.
 ///
@@ -55,6 +60,11 @@ class FeatureImage {
   /// The features, ordered column by column from straight behind, clockwise. `scan` gives the
   /// times; all of its returns must have been added. Lives until the next begin().
   std::vector<Feature>& finish(const Scan& scan);
+
+  /// Of this scan: the first return of each pixel below RangeLimits::min_m, with its place and no
+  /// more. They are no features, and a farther return may have filled their pixel later.
+  [[nodiscard]] const std::vector<Feature>& too_near() const { return too_near_; }
+  [[nodiscard]] ImageSize size() const { return {columns_, beams_.ring_count}; }
 
   /// A whole scan at once, in the sensor's axes.
   std::vector<Feature>& build(const Scan& scan);
@@ -135,6 +145,8 @@ class FeatureImage {
   RingEdges edges_;                         // of the column in hand
   std::vector<Feature> features_;
   std::vector<Feature> last_features_;  // of columns to the right of straight behind
+  std::vector<Feature> too_near_;       // one a pixel
+  std::vector<Filled> noted_;           // of every column: rings that are in too_near_
   Sweep sweep_;
   NearStructure near_structure_;
 };

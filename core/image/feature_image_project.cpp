@@ -13,6 +13,8 @@ struct FeatureImage::Projector {
   Filled* filled;
   std::uint32_t rows, columns;
   float per_rad, nearest2, farthest2;
+  std::vector<Feature>* too_near;
+  Filled* noted;
   Eigen::Matrix3f R_level_sensor;
   std::uint32_t reversed = R_level_sensor(2, 2) < 0.0F ? ~0U : 0U;  // all bits: upside down
 
@@ -32,6 +34,21 @@ struct FeatureImage::Projector {
     const std::uint64_t word = filled[column][row / 64U % std::tuple_size_v<Filled>];
     return static_cast<std::size_t>(~word >> (row % 64U) & 1U);
   }
+  void note_too_near(const Return& r, std::uint32_t row, std::uint32_t column) const {
+    const std::uint64_t bit = std::uint64_t{1} << (row % 64U);
+    std::uint64_t& word = noted[column][row / 64U];
+    if ((word & bit) != 0) return;
+    word |= bit;
+    const Eigen::Vector3f p = R_level_sensor * Eigen::Vector3f(r.x_m, r.y_m, r.z_m);
+    Feature f{};
+    f.x_m = p.x();
+    f.y_m = p.y();
+    f.z_m = p.z();
+    f.kind = FeatureKind::structure;
+    f.ring = static_cast<std::uint8_t>(row);
+    f.column = static_cast<std::uint16_t>(column);
+    too_near->push_back(f);
+  }
   /// False where the pixel is taken or the return out of range.
   bool put(const Return& r, std::uint32_t column) const {
     const std::uint32_t row = row_of(r);
@@ -40,7 +57,10 @@ struct FeatureImage::Projector {
     std::uint64_t& word = filled[column][row / 64U];
     if ((word & bit) != 0) return false;
     const float range2 = r.x_m * r.x_m + r.y_m * r.y_m + r.z_m * r.z_m;
-    if (!(range2 >= nearest2 && range2 <= farthest2)) return false;  // and NaN
+    if (!(range2 >= nearest2 && range2 <= farthest2)) {  // and NaN
+      if (range2 < nearest2) note_too_near(r, row, column);
+      return false;
+    }
     word |= bit;
     const Eigen::Vector3f p = R_level_sensor * Eigen::Vector3f(r.x_m, r.y_m, r.z_m);
     pixels[column * rows + row] = {p.x(), p.y(), p.z(), r.t_ns};
@@ -56,6 +76,8 @@ void FeatureImage::project(std::span<const Return> returns) {
                             columns_per_rad(columns_),
                             nearest2_,
                             farthest2_,
+                            &too_near_,
+                            noted_.data(),
                             R_level_sensor_};
   if (columns_ < most_columns_) {
     project_crowded(projector, returns);

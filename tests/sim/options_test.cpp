@@ -59,10 +59,15 @@ TEST_F(SimCommand, RefusesNumbersThatAreNone) {
   EXPECT_FALSE(fs::exists(folder_));
 }
 
-TEST_F(SimCommand, RefusesABoxWithoutSixNumbers) {
-  for (const char* box : {"-2,-1,-1,1,-1", "-2,-1,-1,1,-1,1,1"}) {
-    EXPECT_NE(complaint(std::string("--robot-box=") + box).find("--robot-box"), std::string::npos);
-  }
+TEST_F(SimCommand, RefusesABoxThatIsNone) {
+  const auto expect_refused = [this](const std::string& box, const std::string& why) {
+    EXPECT_NE(complaint("--robot-box=" + box).find("--robot-box: expected " + why),
+              std::string::npos)
+        << box;
+  };
+  expect_refused("-2,-1,-1,1,-1", "6 numbers for each box, found 5");
+  expect_refused("-2,-1,-1,1,-1,1,1", "6 numbers for each box, found 7");
+  expect_refused("-2,-1,1,-1,-1,1", "from below to, found 1 and -1");
   EXPECT_FALSE(fs::exists(folder_));
 }
 

@@ -15,7 +15,7 @@ class TestRig {
   TestRig(SensorOptions sensor, const MotionOptions& motion, const std::vector<RouteSegment>& road,
           const std::function<void(Scene&)>& build,
           std::int64_t start_utc_ns = 1'700'000'000'000'000'000)
-      : options(sensor),
+      : options(std::move(sensor)),
         route(road, 100.0),
         drive(motion, {}, route),
         path(motion, {.wander_m = 0.0}, route, drive, flat_ground()),

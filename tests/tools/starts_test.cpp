@@ -30,6 +30,7 @@ struct Drive {
   bool start_in_motion = true;
   double tilt_deg = 0.0;  ///< nose down
   double roll_deg = 0.0;
+  std::vector<sim::RobotBox> robot{};
 };
 std::ostream& operator<<(std::ostream& out, const Drive& drive) { return out << drive.name; }
 
@@ -44,6 +45,7 @@ Recording recording_of(const Drive& drive) {
   options.motion.tilt_deg = drive.tilt_deg;
   options.motion.roll_deg = drive.roll_deg;
   options.motion.duration_s = 12.0;
+  options.sensor.robot = drive.robot;
   return test::simulated(options);
 }
 
@@ -127,14 +129,16 @@ TEST(HillStarts, AMapBegunUnderAFalseMotionIsBegunAgain) {
 }
 
 /// At 3 m/s across a field, from rest.
-void expect_followed_across_a_field(std::uint64_t seed, double tilt_deg, double roll_deg = 0.0) {
+void expect_followed_across_a_field(std::uint64_t seed, double tilt_deg, double roll_deg = 0.0,
+                                    const std::vector<sim::RobotBox>& robot = {}) {
   const Recording field = recording_of({.name = "field_from_rest",
                                         .world = "field",
                                         .speed_mps = 3.0,
                                         .seed = seed,
                                         .start_in_motion = false,
                                         .tilt_deg = tilt_deg,
-                                        .roll_deg = roll_deg});
+                                        .roll_deg = roll_deg,
+                                        .robot = robot});
   const Outcome outcome = start_at(field, 0, field.scans.size());
   EXPECT_LT(outcome.squared_error, 6.0 * 4.0) << "seed " << seed;
   EXPECT_LT(outcome.last_m, 1.0) << "seed " << seed << ", 25 m on";
@@ -158,6 +162,13 @@ TEST(FieldStarts, ATiltedSensorIsFollowedAcrossBareGround) {
 TEST(FieldStarts, AnUpsideDownSensorIsFollowedAcrossBareGround) {
   for (const std::uint64_t seed : {9878U, 9879U, 9880U}) {
     expect_followed_across_a_field(seed, 0.0, 180.0);
+  }
+}
+
+// When returns of the robot counted as structure, they held the pose where the vehicle had stood.
+TEST(FieldStarts, ALoadBehindTheSensorDoesNotHoldItInPlace) {
+  for (const std::uint64_t seed : {9852U, 9866U, 9867U}) {
+    expect_followed_across_a_field(seed, 0.0, 0.0, {{-1.5, -1.2, -0.4, 0.4, -0.4, 0.6}});
   }
 }
 

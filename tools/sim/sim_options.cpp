@@ -169,12 +169,20 @@ void add_faults(CLI::App& command, SimOptions& options) {
 
 std::vector<RobotBox> boxes_of(const std::vector<double>& numbers) {
   constexpr std::size_t kEach = std::tuple_size_v<RobotBox>;
+  const auto refuse = [](const std::string& why) {
+    throw CLI::ValidationError("--robot-box", why);
+  };
   if (numbers.size() % kEach != 0) {
-    throw CLI::ValidationError(
-        "--robot-box", fmt::format("expected {} numbers a box, found {}", kEach, numbers.size()));
+    refuse(fmt::format("expected {} numbers for each box, found {}", kEach, numbers.size()));
   }
   std::vector<RobotBox> boxes(numbers.size() / kEach);
   for (std::size_t k = 0; k < numbers.size(); ++k) boxes[k / kEach][k % kEach] = numbers[k];
+  for (const RobotBox& box : boxes) {
+    for (std::size_t k = 0; k < kEach; k += 2) {
+      if (box[k] < box[k + 1]) continue;
+      refuse(fmt::format("expected from below to, found {} and {}", box[k], box[k + 1]));
+    }
+  }
   return boxes;
 }
 
