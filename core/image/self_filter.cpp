@@ -80,7 +80,7 @@ void SelfFilter::note(const std::vector<Feature>& returns) {
 }
 
 void SelfFilter::note(float range_m, Seen& seen) {
-  constexpr int kLost = 3;  // scans: rain in front of the robot costs less than it regains
+  constexpr int kLost = 3;  // scans: a robot is gained while less than a quarter is drops
   if (std::abs(range_m - seen.range_m) < image::kSteadyRange_m) {
     seen.scans = std::min(seen.scans + 1, image::kSteadyScans);
   } else if (seen.scans > kLost) {

@@ -177,7 +177,7 @@ TEST(Vlp16Encoder, DualPairsShareTheirAzimuthAndOrder) {
   EXPECT_GT(same, 5000);
 }
 
-// The face of a box 1 m behind, seen squarely by the rays at 180 degrees, 20 m above the ground.
+// The face of a box 1 m behind: the rays at 180 degrees meet it in a plane with its normal.
 TEST(Vlp16Encoder, APartOfTheRobotMovesAndTurnsWithTheSensor) {
   SensorOptions options = noiseless();
   options.robot = {{-1.5, -1.0, -0.5, 0.5, -1.0, 1.0}};
